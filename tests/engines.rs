@@ -284,7 +284,11 @@ fn a_stop_condition_stops() {
 /// The card with models over 10^6 cycles: every engine of this project, lanes, iverilog and Verilator agree.
 #[test]
 fn the_card_agrees_over_many_cycles() {
-    let cycles = if tools::is_whole() { 1_000_000 } else { 500_000 };
+    let cycles = if tools::is_whole() {
+        1_000_000
+    } else {
+        500_000
+    };
     let outside = tools::require("iverilog", "engines: iverilog")
         && tools::require("verilator", "engines: Verilator");
     let options = bench::Options {

@@ -64,7 +64,9 @@ fn fusesoc_lints_and_simulates_the_core() {
     }
     let cores = cores("fusesoc");
     let template = include_str!("../gen/templates/integration/core.jinja");
-    let runs: Vec<_> = tools::third(&cores, template.len()).map(|core| core.0).collect();
+    let runs: Vec<_> = tools::third(&cores, template.len())
+        .map(|core| core.0)
+        .collect();
     for (name, _, _, folder) in &cores {
         let targets = ["lint", "sim"].into_iter();
         for target in targets.filter(|t| *t == "lint" || runs.contains(name)) {

@@ -55,7 +55,9 @@ fn rust_version_is_what_the_dependencies_need() {
         let (greatest, name) = match is_for_firmware {
             true => greatest_of(&|name| {
                 let needs = package["dependencies"].as_array().unwrap().iter();
-                needs.filter(|d| d["kind"].is_null()).any(|d| d["name"] == name)
+                needs
+                    .filter(|d| d["kind"].is_null())
+                    .any(|d| d["name"] == name)
             }),
             false => of_all,
         };
@@ -101,7 +103,14 @@ fn the_driver_builds_with_an_older_rust_and_for_small_processors() {
             }
         };
         command
-            .args(["check", "-p", FOR_FIRMWARE[0], "--offline", "--locked", "--target-dir"])
+            .args([
+                "check",
+                "-p",
+                FOR_FIRMWARE[0],
+                "--offline",
+                "--locked",
+                "--target-dir",
+            ])
             .arg(&folder)
             .args(target.map(|target| format!("--target={target}")))
             .current_dir(env!("CARGO_MANIFEST_DIR"));

@@ -174,7 +174,10 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let fields = [
             (field!(CARD_CONFIG.trigger_sources.pin), sources.pin),
             (field!(CARD_CONFIG.trigger_sources.timer), sources.timer),
-            (field!(CARD_CONFIG.trigger_sources.register), sources.register),
+            (
+                field!(CARD_CONFIG.trigger_sources.register),
+                sources.register,
+            ),
         ];
         let period = field!(CARD_CONFIG.trigger_period.value);
         if period_cycles.is_some_and(|cycles| !period.allows(cycles, false)) {

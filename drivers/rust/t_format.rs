@@ -307,7 +307,9 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         settings: &TFormatSettings,
     ) -> Result<(), Error<L::Error>> {
         self.needs_t_format(channel)?;
-        let is_request = OF_TRIGGERS.iter().any(|id| u32::from(*id) == settings.request_id);
+        let is_request = OF_TRIGGERS
+            .iter()
+            .any(|id| u32::from(*id) == settings.request_id);
         let fits = |((_, field), value): ((usize, &Field), u32)| field.allows(value, true);
         let are_allowed = places().into_iter().zip(settings.values()).all(fits);
         // A filter of half a bit leaves nothing of it.

@@ -1,8 +1,8 @@
 //! Both edges of the clock on rust-hdl's kernels, on every engine, and in the emitted Verilog.
 
 use super::Kind;
-use crate::tools::third;
 use crate::three_way::{three_way, Stimulus};
+use crate::tools::third;
 use endat_hdl::endat::channel::{Channel, FixedTimes};
 use rtl_design::elaborate::elaborate;
 use rtl_design::engine::Compiled;

@@ -40,7 +40,11 @@ fn the_area_of_tolerance_is_that_of_an_ideal_receiver() {
     for (row, cells) in counts.chunks(eighths.len()).enumerate() {
         let good = cells.iter().filter(|c| is_good(c)).count();
         let (kind, jitter) = (kinds[row / jitters.len()], jitters[row % jitters.len()]);
-        println!("{:2} places, jitter {jitter}: {good} of {}", kind.places(), cells.len());
+        println!(
+            "{:2} places, jitter {jitter}: {good} of {}",
+            kind.places(),
+            cells.len()
+        );
     }
     assert!(part >= 0.82, "{passed} of {} cells, {part:.3}", cases.len());
     // What passes the CRC by chance is one bad frame in 32 at most, and there are few bad ones in a cell.

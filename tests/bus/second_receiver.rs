@@ -1,8 +1,8 @@
 //! A second receiver on the same samples: it agrees where nothing is upset, and tells where something is.
 
 use super::{at, frame, Master, WORD_BUSES};
-use crate::tools::is_whole;
 use crate::three_way::{three_way, Stimulus};
+use crate::tools::is_whole;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::features::Features;
 use endat_hdl::endat::second_receiver::SecondReceiver;

@@ -1,8 +1,8 @@
 //! Kernels, engines and emitted Verilog of each front's card agree on a random stimulus, with the bus asked all the time.
 
 use super::text;
-use crate::tools::third;
 use crate::three_way::{three_way, Stimulus};
+use crate::tools::third;
 use endat_gen::config::parse;
 use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,

@@ -84,7 +84,8 @@ fn compiled() -> Option<&'static Path> {
         write_header(&folder);
         let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver");
         let include = format!("-I{}", home().display());
-        let own = ["program.c", "alone.c", "t_format.c"].map(|name| tests.join(name).display().to_string());
+        let own = ["program.c", "alone.c", "t_format.c"]
+            .map(|name| tests.join(name).display().to_string());
         let mut arguments: Vec<String> = ["-std=c99", "-Wall", "-Werror", "-O1", "-g", "-o", "run"]
             .map(str::to_owned)
             .to_vec();

@@ -178,7 +178,12 @@ impl Rig {
             noise: 0,
             rng: Rng::new(3),
             system_hz: project.card.system_hz,
-            encoders: project.card.channels.iter().filter(|c| c.is_endat()).count(),
+            encoders: project
+                .card
+                .channels
+                .iter()
+                .filter(|c| c.is_endat())
+                .count(),
             slow_cycles: 0,
             flipped: 0,
             loses: 0,

@@ -392,7 +392,10 @@ fn margin_is_what_the_card_has_measured() {
 fn monitor_shows_rate_health_and_state() {
     // Not the screen, whatever the tests run on.
     for form in ["--plain", "--json"] {
-        let outcome = with(&["monitor", form, "--count", "3", "--every", "0"], service());
+        let outcome = with(
+            &["monitor", form, "--count", "3", "--every", "0"],
+            service(),
+        );
         assert_eq!(outcome.exit_code, 0, "{outcome:?}");
     }
 }

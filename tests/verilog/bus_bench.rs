@@ -256,7 +256,7 @@ fn bench_behind_a_fast_bus_waits_for_the_services() {
     let channel = "[[channel]]\nposition_bits = 25\ncommand = \"111000\"\n";
     let text = format!(
         "name = \"gantry_pos\"\n\
-         [clock]\nsystem_hz = 100_000_000\n\
+         [clock]\nsystem_hz = 50_000_000\n\
          [endat]\nclock_hz = 6_250_000\ncable_m = 20\n\
          {channel}{channel}\
          [trigger]\nsample_hz = 10_000\nsources = [\"register\"]\n\
