@@ -69,6 +69,7 @@ fn the_python_package_is_built_installed_tested_and_typed() {
         Command::new(&python)
             .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", &tests])
             .env("ENDAT_GEN", env!("CARGO_BIN_EXE_endat-gen"))
+            .env("ENDAT_SERVICE", crate::hosts::quick_service_file())
             .current_dir(&dir),
     );
     // The installed types, in the strict reading of somebody who uses them.

@@ -22,6 +22,7 @@ pub use ports::{slow_card, Served};
 use endat_gen::config::{load_preset, parse, preset, Project};
 use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
 use endat_host::{Bridge, Card};
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// A preset with other line parts or numbers: pairs of texts that are replaced.
@@ -55,13 +56,20 @@ const QUICK: [(&str, &str); 6] = [
     ("sample_hz = 10_000", "sample_hz = 5_000"),
 ];
 
-/// The port of the quick card with a service.
-pub fn quick_service_port() -> &'static str {
-    static PORT: LazyLock<String> = LazyLock::new(|| {
+/// The quick card with a service, as a file.
+pub fn quick_service_file() -> &'static Path {
+    static FILE: LazyLock<PathBuf> = LazyLock::new(|| {
         let file = crate::tools::folder("quick_service").join("quick_service.toml");
         std::fs::write(&file, changed_text(SERVICE, &QUICK)).unwrap();
-        format!("virtual:{}", file.display())
+        file
     });
+    &FILE
+}
+
+/// Its port.
+pub fn quick_service_port() -> &'static str {
+    static PORT: LazyLock<String> =
+        LazyLock::new(|| format!("virtual:{}", quick_service_file().display()));
     &PORT
 }
 

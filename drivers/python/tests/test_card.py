@@ -193,8 +193,8 @@ def test_t_format_has_counts() -> None:
         assert card.encoders()[at] is None
 
 
-def test_additional_data_come_with_their_positions(tmp_path: Path, service_text: str) -> None:
-    text = service_text.replace("[stream]", "[stream]\nadditional_data = true")
+def test_additional_data_come_with_their_positions(tmp_path: Path, service_file: Path) -> None:
+    text = service_file.read_text().replace("[stream]", "[stream]\nadditional_data = true")
     text = text.replace("sample_hz = 5_000", "sample_hz = 3_000")
     assert "additional_data = true" in text
     config = tmp_path / "card.toml"
