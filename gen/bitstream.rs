@@ -1,7 +1,12 @@
-//! From an emission to a bitstream with open tools: yosys, nextpnr with one seed after another, and what packs its result.
+//! From an emission to a bitstream with open tools: yosys, nextpnr with one seed after another, and what packs its result; or with the
+//! vendor's tool and a script of the emission.
+
+mod vendor;
+
+pub use vendor::{read, run as run_vendor};
 
 use crate::artifact::{self, Artifact};
-use crate::board::{Board, Build};
+use crate::board::{Board, Build, Vendor};
 use crate::config::Project;
 use crate::error::GenError;
 use crate::readers::is_bench;
@@ -91,6 +96,21 @@ pub struct Report {
     pub load: Option<String>,
 }
 
+impl Report {
+    fn new(project: &Project, board: &Board, seeds: u32, best: Attempt, bitstream: String) -> Self {
+        Self {
+            name: project.name.clone(),
+            board: board.name.clone(),
+            part: board.part.clone(),
+            system_hz: project.card.system_hz,
+            seeds,
+            best,
+            bitstream,
+            load: None,
+        }
+    }
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} on {}, {}", self.name, self.board, self.part)?;
@@ -126,18 +146,43 @@ impl fmt::Display for Report {
     }
 }
 
-/// The tools for a board, as its family has them.
-pub fn tools(board: &Board) -> Result<&Build, GenError> {
-    board.family.build.as_ref().ok_or_else(|| {
-        GenError::input(format!(
-            "board = {}: no open tool makes a bitstream for {}; emit the card, and its README has the commands for {}",
-            board.name, board.family.title, board.family.tools
-        ))
-    })
+/// What makes a board's bitstream.
+#[derive(Clone, Copy, Debug)]
+pub enum Maker<'a> {
+    /// yosys, nextpnr and a packer.
+    Open(&'a Build),
+    /// The vendor's tool.
+    Vendor(&'a Vendor),
+}
+
+impl<'a> Maker<'a> {
+    /// What the family of a board has; open tools if it has both and nobody asks for the vendor's.
+    pub fn of(board: &'a Board, asks_vendor: bool) -> Result<Self, GenError> {
+        let family = &board.family;
+        match (&family.build, &family.vendor) {
+            (Some(build), _) if !asks_vendor => Ok(Self::Open(build)),
+            (_, Some(vendor)) => Ok(Self::Vendor(vendor)),
+            (Some(_), None) => Err(GenError::input(format!(
+                "--vendor: {} has no script for a vendor's tool; leave it out, and open tools make the bitstream",
+                family.title
+            ))),
+            (None, None) => Err(GenError::input(format!(
+                "board = {}: {} has neither open tools nor a vendor's; add [build] or [vendor] to its family.toml",
+                board.name, family.title
+            ))),
+        }
+    }
+
+    const fn bitstream(self) -> &'a String {
+        match self {
+            Self::Open(build) => &build.bitstream,
+            Self::Vendor(vendor) => &vendor.bitstream,
+        }
+    }
 }
 
 /// Words of a family's file, with what is this card's in them.
-fn fill(project: &Project, board: &Board, words: &[String]) -> Result<Vec<String>, GenError> {
+pub fn fill(project: &Project, board: &Board, words: &[String]) -> Result<Vec<String>, GenError> {
     let facts = context! {
         name => project.name.as_str(),
         constraints => format!("{}.{}", project.name, board.family.constraints),
@@ -151,8 +196,8 @@ fn fill(project: &Project, board: &Board, words: &[String]) -> Result<Vec<String
 }
 
 /// Name of a card's bitstream.
-pub fn file_name(project: &Project, board: &Board) -> Result<String, GenError> {
-    let words = std::slice::from_ref(&tools(board)?.bitstream);
+pub fn file_name(project: &Project, board: &Board, maker: Maker<'_>) -> Result<String, GenError> {
+    let words = std::slice::from_ref(maker.bitstream());
     let name = fill(project, board, words)?.concat();
     match name.contains(['/', '\\']) {
         true => Err(GenError::input(format!(
@@ -179,11 +224,11 @@ pub fn loading(board: &Board, bitstream: &Path, for_good: bool) -> Option<String
 pub fn build(
     project: &Project,
     board: &Board,
+    build: &Build,
     artifacts: &[Artifact],
     seeds: u32,
     progress: &mut dyn FnMut(String),
 ) -> Result<(Report, Vec<u8>), GenError> {
-    let build = tools(board)?;
     let name = project.name.as_str();
     let scratch = scratch::folder()?;
     let folder = scratch.path();
@@ -238,28 +283,20 @@ pub fn build(
             break;
         }
     }
-    let bitstream = file_name(project, board)?;
-    let path = folder.join(&bitstream);
-    let bytes = std::fs::read(&path).map_err(|e| {
-        GenError::io(
-            "read",
-            &path,
-            &e,
-            "correct bitstream or pack in the family's file",
-        )
-    })?;
-    let report = Report {
-        name: name.to_owned(),
-        board: board.name.clone(),
-        part: board.part.clone(),
-        system_hz: project.card.system_hz,
-        seeds: tried,
-        best: best
-            .ok_or_else(|| GenError::input("--seeds = 0: no seed, no bitstream; give 1 or more"))?,
-        bitstream,
-        load: None,
-    };
-    Ok((report, bytes))
+    let best =
+        best.ok_or_else(|| GenError::input("--seeds = 0: no seed, no bitstream; give 1 or more"))?;
+    let bitstream = file_name(project, board, Maker::Open(build))?;
+    let bytes = made(folder, &bitstream)?;
+    Ok((Report::new(project, board, tried, best, bitstream), bytes))
+}
+
+/// The bitstream that a tool has made.
+fn made(folder: &Path, bitstream: &str) -> Result<Vec<u8>, GenError> {
+    let path = folder.join(bitstream);
+    std::fs::read(&path).map_err(|e| {
+        let remedy = "correct what makes the bitstream in the family's files";
+        GenError::io("read", &path, &e, remedy)
+    })
 }
 
 /// Runs a tool by its name or, rather, as YoWASP calls it.
@@ -280,33 +317,38 @@ fn run(folder: &Path, words: &[String], install: &str) -> Result<(), GenError> {
         if ran.is_good {
             return Ok(());
         }
-        let said = ran.text();
-        let start = said.len().saturating_sub(TAIL_BYTES);
-        let start = (start..said.len()).find(|at| said.is_char_boundary(*at));
-        let tail = start
-            .and_then(|at| said.get(at..))
-            .unwrap_or_default()
-            .trim();
-        return Err(GenError::input(format!(
-            "{name}: failed; if the card does not fit, leave parts or channels out, or take a larger board. It said: {tail}"
-        )));
+        return Err(failed(&name, &ran));
     }
     Err(GenError::input(format!(
         "{tool}: neither yowasp-{tool} nor {tool} is installed; install it: `{install}`"
     )))
 }
 
-/// What nextpnr reports.
+/// What a tool says that did not do it.
+fn failed(name: &str, ran: &tools::Ran) -> GenError {
+    let said = ran.text();
+    let start = said.len().saturating_sub(TAIL_BYTES);
+    let start = (start..said.len()).find(|at| said.is_char_boundary(*at));
+    let tail = start.and_then(|at| said.get(at..)).unwrap_or_default();
+    GenError::input(format!(
+        "{name}: failed; if the card does not fit, leave parts or channels out, or take a larger board. It said: {}",
+        tail.trim()
+    ))
+}
+
+/// What nextpnr reports, or the script of a vendor's tool.
 fn read_report(path: &Path, seed: u32, system_hz: u64) -> Result<Attempt, GenError> {
     let text = scratch::read(path)?;
+    let wrong = |what: &str| {
+        GenError::input(format!(
+            "{}: {what}; build once more, and look at what the tool says of its clocks",
+            path.display()
+        ))
+    };
     let report: Value =
-        serde_json::from_str(&text).map_err(|e| GenError::fault("report of nextpnr", &e))?;
-    attempt(&report, seed, system_hz).ok_or_else(|| {
-        GenError::fault(
-            "report of nextpnr",
-            &"it has no clock as fast as the system clock",
-        )
-    })
+        serde_json::from_str(&text).map_err(|e| wrong(&format!("is no report: {e}")))?;
+    attempt(&report, seed, system_hz)
+        .ok_or_else(|| wrong("has no clock as fast as the system clock"))
 }
 
 /// The clocks and cells of a report; none if it does not have the system clock.

@@ -1,9 +1,10 @@
 //! Board-dependent files: the board top with the clock manager, the constraints, and the page about both.
 
 use crate::artifact::Artifact;
+use crate::bitstream::{self, Maker};
 use crate::board::{
     Assignment, Board, Kind, Pll, CLOCK, CLOCK_VHDL, CONSTRAINTS, PARALLEL_ADDRESS_LINES,
-    PARALLEL_DATA_LINES, README,
+    PARALLEL_DATA_LINES, README, TIMING, VENDOR,
 };
 use crate::config::Project;
 use crate::error::GenError;
@@ -11,6 +12,7 @@ use crate::explain;
 use crate::language::Language;
 use crate::template;
 use crate::testbench::RESET_CYCLES;
+use crate::wiring;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::service::program::CLEAR_CYCLES;
 use endat_hdl::endat::timing::ABORT_US;
@@ -22,6 +24,8 @@ use serde::Serialize;
 /// The templates that are the same for every family.
 const TOP: &str = include_str!("../constraints/templates/top.v.jinja");
 const TOP_VHDL: &str = include_str!("../constraints/templates/top.vhd.jinja");
+/// What scripts of vendors' tools have in common.
+const REPORT: &str = include_str!("../constraints/templates/report.tcl.jinja");
 const PAGE: &str = include_str!("../constraints/templates/readme.md.jinja");
 
 /// A port as the templates see it.
@@ -43,55 +47,13 @@ struct Port {
     asynchronous: &'static str,
 }
 
-/// What a port is, in words; `t_format` are the channels that speak it.
-fn meaning(pin: &Assignment, t_format: &[usize]) -> String {
-    let channel: String = pin.signal.chars().filter(char::is_ascii_digit).collect();
-    let is_t_format = channel.parse().is_ok_and(|n| t_format.contains(&n));
-    match (pin.kind, pin.signal.as_str()) {
-        (Kind::Oscillator, _) => "oscillator of the board".into(),
-        (Kind::Transceiver, s) if s.ends_with("_oe") => {
-            format!("driver enable of the DATA transceiver, channel {channel}")
-        }
-        (Kind::Transceiver, s) if s.contains("clk") && is_t_format => {
-            format!("stays HIGH: channel {channel} speaks T-format, which has no clock")
-        }
-        (Kind::Transceiver, s) if s.contains("clk") => {
-            format!("EnDat CLOCK to its driver, channel {channel}; idles high")
-        }
-        (Kind::Transceiver, _) => format!("DATA to the encoder, channel {channel}"),
-        (Kind::EncoderData, _) => format!("DATA from the encoder, channel {channel}"),
-        (Kind::Trigger, _) => "external trigger, rising edge".into(),
-        (Kind::UartInput, _) => "host UART, from the host".into(),
-        (Kind::UartOutput, _) => "host UART, to the host".into(),
-        (Kind::BusInput, "spi_sck_i") => "host SPI, clock, mode 0".into(),
-        (Kind::BusStrobe, "spi_cs_n_i") => "host SPI, selects the card when low".into(),
-        (Kind::BusInput, "spi_mosi_i") => "host SPI, from the host".into(),
-        (Kind::BusInput, "second_sck_i") => "second controller's SPI, clock, mode 0".into(),
-        (Kind::BusStrobe, "second_cs_n_i") => {
-            "second controller's SPI, selects the card when low".into()
-        }
-        (Kind::BusOutput, "second_miso_o") => {
-            "second controller's SPI, to the controller; driven while selected".into()
-        }
-        (Kind::BusOutput, _) => "host SPI, to the host; driven while selected".into(),
-        (Kind::BusStrobe, "bus_cs_n_i") => "host bus, selects the card when low".into(),
-        (Kind::BusStrobe, "bus_rd_n_i") => "host bus, reads when low".into(),
-        (Kind::BusStrobe, "bus_wr_n_i") => "host bus, writes when low".into(),
-        (Kind::BusInput | Kind::BusStrobe, _) => "host bus, register".into(),
-        (Kind::BusData, _) => "host bus, data; driven while read".into(),
-        (Kind::Interrupt, _) => "interrupt to the host".into(),
-        (Kind::Led, "led_status_o") => "status light".into(),
-        (Kind::Led, _) => format!("light of channel {channel}"),
-    }
-}
-
 impl Port {
     fn new(pin: &Assignment, board: &Board, t_format: &[usize]) -> Self {
         Self {
             signal: pin.signal.clone(),
             pin: pin.pin.clone(),
             position: pin.position.clone(),
-            meaning: meaning(pin, t_format),
+            meaning: pin.meaning(t_format),
             direction: pin.kind.direction(),
             mode: match pin.kind.direction().split(' ').next() {
                 Some("input") => "in",
@@ -322,15 +284,36 @@ fn of_board(
         true => (vhdl_clock("statements")?, vhdl_clock("declarations")?),
         false => (of_family(CLOCK)?, String::new()),
     };
+    let build_name = format!("{name}_build.tcl");
+    let script = {
+        let report = template::render("report.tcl", REPORT, &facts)?;
+        let facts = context! { report, ..facts.clone() };
+        family.render_any(VENDOR, &facts)?
+    };
+    let timing = family.render_any(TIMING, &facts)?;
+    let timing_name = family
+        .timing
+        .as_ref()
+        .map(|end| format!("{name}_top.{end}"));
+    let vendor = match &family.vendor {
+        Some(vendor) => Some(context! {
+            tool => vendor.tool.as_str(),
+            command => bitstream::fill(project, board, &vendor.run)?.join(" "),
+            bitstream => bitstream::file_name(project, board, Maker::Vendor(vendor))?,
+        }),
+        None => None,
+    };
     let facts = context! {
+        vendor,
+        timing_name => timing_name.clone(),
         clock_manager,
         clock_declarations,
         output_attributes => Serde(attributes(&family.output_cell)),
         reset_attributes => Serde(attributes(&family.reset_registers)),
-        bitstream => of_family(README)?,
+        bitstream => family.render_any(README, &facts)?.unwrap_or_default(),
         ..facts.clone()
     };
-    Ok(vec![
+    let mut artifacts = vec![
         Artifact::new(
             top.as_str(),
             match has_vhdl_top {
@@ -346,7 +329,16 @@ fn of_board(
             crate::artifact::README,
             template::render("readme", PAGE, &facts)?,
         ),
-    ])
+    ];
+    let drawing = wiring::drawing(project, board);
+    artifacts.push(Artifact::new(format!("{name}_wiring.svg"), drawing));
+    artifacts.extend(script.map(|text| Artifact::new(build_name, text)));
+    artifacts.extend(
+        timing_name
+            .zip(timing)
+            .map(|(name, text)| Artifact::new(name, text)),
+    );
+    Ok(artifacts)
 }
 
 #[cfg(test)]

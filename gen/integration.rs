@@ -1,5 +1,5 @@
-//! What integrators expect beside the sources: FuseSoC core, timing constraints, Vivado packaging, LiteX module, instantiation template,
-//! C example.
+//! What integrators expect beside the sources: FuseSoC core, timing constraints, Vivado packaging, LiteX module and
+//! Amaranth component, component of Platform Designer, instantiation template, C example.
 
 mod interface;
 
@@ -20,7 +20,7 @@ use rtl_design::elaborate::{Design, Direction};
 use serde::Serialize;
 
 /// End of the file's name, and its template.
-const TEMPLATES: [(&str, &str); 6] = [
+const TEMPLATES: [(&str, &str); 7] = [
     (
         "_ipxact.xml",
         include_str!("templates/integration/ipxact.xml.jinja"),
@@ -39,7 +39,16 @@ const TEMPLATES: [(&str, &str); 6] = [
         "_litex.py",
         include_str!("templates/integration/litex.py.jinja"),
     ),
+    (
+        "_amaranth.py",
+        include_str!("templates/integration/amaranth.py.jinja"),
+    ),
 ];
+/// Of the buses here, Platform Designer connects APB as it is: of AXI4-Lite it wants signals that this card has no use for.
+const PLATFORM_DESIGNER: (&str, &str) = (
+    "_hw.tcl",
+    include_str!("templates/integration/hw.tcl.jinja"),
+);
 /// The example reads the card over the UART.
 const EXAMPLE: (&str, &str) = (
     "_example.c",
@@ -293,7 +302,8 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
     };
     let wanted = TEMPLATES
         .iter()
-        .chain((core.bus == HostBus::Uart).then_some(&EXAMPLE));
+        .chain((core.bus == HostBus::Uart).then_some(&EXAMPLE))
+        .chain((core.bus == HostBus::Apb).then_some(&PLATFORM_DESIGNER));
     let is_verilog_only = |end: &str| end == "_instance.vh";
     wanted
         .filter(|(end, _)| core.language == Language::Verilog || !is_verilog_only(end))

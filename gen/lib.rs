@@ -38,6 +38,7 @@ pub mod testbench;
 pub mod tools;
 pub mod vhdl;
 pub mod virtual_card;
+pub mod wiring;
 
 use artifact::Artifact;
 use config::Project;
@@ -59,8 +60,11 @@ pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
 /// The same with the core in this language.
 pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, GenError> {
     let design = design(project)?;
-    let mut artifacts = artifacts_of(project, &design, language)?;
+    let mut artifacts = sources_of(project, &design, language);
     let sources = sources::paths(&artifacts, language);
+    if project.bus != HostBus::Bare {
+        artifacts.extend(maps::artifacts(project)?);
+    }
     artifacts.push(sources::list(&project.name, &sources));
     let bench = match language {
         Language::Verilog => testbench::artifact(project)?,
@@ -107,11 +111,11 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
 }
 
 /// The card in a language, and its register map in every format.
-fn artifacts_of(
+fn sources_of(
     project: &Project,
     design: &Design,
     language: Language,
-) -> Result<Vec<Artifact>, GenError> {
+) -> Vec<Artifact> {
     let report = explain::report(project).to_string();
     let channels = project.card.channels.len();
     let title = match project.bus {
@@ -124,9 +128,5 @@ fn artifacts_of(
         ),
     };
     let header = sources::header(title, &project.hash, &report);
-    let mut artifacts = sources::artifacts(design, &header, language);
-    if project.bus != HostBus::Bare {
-        artifacts.extend(maps::artifacts(project)?);
-    }
-    Ok(artifacts)
+    sources::artifacts(design, &header, language)
 }

@@ -49,20 +49,30 @@ pub fn build(repository: &Path, out: &Path) -> Result<PathBuf, Complaints> {
         fs::create_dir_all(folder).map_err(told(folder))?;
         fs::write(&path, &page.text).map_err(told(&path))?;
     }
-    let docs = repository.join("docs");
-    for entry in fs::read_dir(&docs).map_err(told(&docs))? {
-        let file = entry.map_err(told(&docs))?.path();
-        let ending = file.extension().and_then(|e| e.to_str());
-        if let (true, Some(name)) = (
-            ending.is_some_and(|e| PICTURES.contains(&e)),
-            file.file_name(),
-        ) {
-            fs::copy(&file, sources.join(name)).map_err(told(&file))?;
-        }
-    }
+    copy_pictures(&repository.join("docs"), &sources)?;
     let ran = tools::run(MDBOOK, out, &["build"]).map_err(|e| e.messages().to_vec())?;
     match ran.is_good {
         true => Ok(out.join("html/index.html")),
         false => Err(vec![format!("{}: {}", MDBOOK, ran.text())]),
     }
+}
+
+/// Copies the pictures of a folder and of those in it.
+fn copy_pictures(from: &Path, to: &Path) -> Result<(), Complaints> {
+    for entry in fs::read_dir(from).map_err(told(from))? {
+        let file = entry.map_err(told(from))?.path();
+        let ending = file.extension().and_then(|e| e.to_str());
+        let is_picture = ending.is_some_and(|e| PICTURES.contains(&e));
+        let Some(name) = file.file_name() else {
+            continue;
+        };
+        if file.is_dir() {
+            let to = to.join(name);
+            fs::create_dir_all(&to).map_err(told(&to))?;
+            copy_pictures(&file, &to)?;
+        } else if is_picture {
+            fs::copy(&file, to.join(name)).map_err(told(&file))?;
+        }
+    }
+    Ok(())
 }

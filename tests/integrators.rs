@@ -1,5 +1,6 @@
 //! What integrators take: each file, used by the program that it is for.
 
+mod designers;
 mod fusesoc;
 mod ipxact;
 mod litex;

@@ -112,6 +112,7 @@ const char *endat_error_text(endat_error error)
         "the trigger source \"register\" is not enabled: endat_set_triggers()",
         "a set of the stream was damaged: the link is disturbed, or another reader takes from it",
         "the exchange with the T-format encoder failed: endat_cause_text() of the reply's cause tells why",
+        "the card or its service has begun anew, or another master has asked: ask again, write alarms and additional data again",
     };
     const uint32_t number = (uint32_t)error;
 

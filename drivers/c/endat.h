@@ -47,6 +47,7 @@ typedef enum {
     ENDAT_ERROR_TRIGGER_OFF,    /**< The source "register" is not enabled: a trigger from here does nothing. */
     ENDAT_ERROR_SET,            /**< A set of the stream was damaged; the next one is a good one again. */
     ENDAT_ERROR_EXCHANGE,       /**< The exchange with a T-format encoder failed; the reply's cause tells why. */
+    ENDAT_ERROR_RESTARTED,      /**< The card or its service has begun anew, or another master has asked: ask again. */
     ENDAT_ERRORS                /**< How many there are. */
 } endat_error;
 
@@ -255,7 +256,7 @@ typedef struct {
  */
 endat_error endat_request_begin(const endat_card *card, endat_request *request, uint32_t channel, uint32_t command, uint32_t address,
                                 uint32_t data);
-/** What became of it: ENDAT_ERROR_BUSY until it has ended. */
+/** What became of it: ENDAT_ERROR_BUSY until it has ended; ENDAT_ERROR_RESTARTED: the answer that is there is not of this request. */
 endat_error endat_request_poll(const endat_card *card, const endat_request *request, endat_answer *answer);
 /** Gives up the request that waits for a trigger; one on the wire is finished. */
 endat_error endat_request_cancel(const endat_card *card, uint32_t channel);

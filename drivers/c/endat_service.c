@@ -11,6 +11,8 @@
 #define ABORT_PAUSE_US 30000u
 /** From so many milliseconds on the microseconds of a duration have wrapped, or may have. */
 #define WRAPS_MS 60u
+/** Requests are counted up to it, and then from 0 on. */
+#define FINISHED_MAX (ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED_MASK >> ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED_SHIFT)
 
 /* The words of a list follow each other: if not, this does not compile. */
 typedef char endat_list_follows[((ENDAT_MAP_SERVICE_LIST_7_WORD(0u) - ENDAT_MAP_SERVICE_LIST_0_WORD(0u)) == 7u) ? 1 : -1];
@@ -211,6 +213,7 @@ endat_error endat_request_poll(const endat_card *card, const endat_request *requ
     uint32_t low = 0u;
     uint32_t more = 0u;
     uint32_t duration = 0u;
+    uint32_t ended;
     uint32_t ms;
     endat_error error = endat_read_word(card, ENDAT_MAP_SERVICE_REQUEST_STATE_WORD(channel), &state);
 
@@ -218,9 +221,12 @@ endat_error endat_request_poll(const endat_card *card, const endat_request *requ
         return error;
     }
     /* "busy" may be 0 still in the first reads: only the number tells. */
-    if (((state & ENDAT_MAP_SERVICE_REQUEST_STATE_BUSY_MASK) != 0u) ||
-        (ENDAT_MAP_GET(ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED, state) == request->finished)) {
+    ended = (ENDAT_MAP_GET(ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED, state) - request->finished) & FINISHED_MAX;
+    if ((ended == 0u) || ((ended == 1u) && ((state & ENDAT_MAP_SERVICE_REQUEST_STATE_BUSY_MASK) != 0u))) {
         return ENDAT_ERROR_BUSY;
+    }
+    if (ended != 1u) {
+        return ENDAT_ERROR_RESTARTED;
     }
     error = endat_read_word(card, ENDAT_MAP_SERVICE_ANSWER_WORD(channel), &low);
     if (error == ENDAT_OK) {

@@ -42,8 +42,32 @@ pub struct Sources {
     pub register: bool,
 }
 
-/// The word of a channel that each setting stands in, and its field.
-fn places() -> [(usize, &'static Field); 8] {
+/// The word of a channel that a setting stands in, and its field.
+pub(crate) type Place = (usize, &'static Field);
+
+/// What the words hold at these places.
+pub(crate) fn values_at<const N: usize>(places: [Place; N], words: [u32; 3]) -> [u32; N] {
+    places.map(|(word, field)| field.of(words[word]))
+}
+
+/// The words with these values at their places; none if one is nothing that its field takes.
+pub(crate) fn put_at<const N: usize>(
+    places: [Place; N],
+    values: [u32; N],
+    mut words: [u32; 3],
+    is_t_format: bool,
+) -> Option<[u32; 3]> {
+    for ((word, field), value) in places.into_iter().zip(values) {
+        if !field.allows(value, is_t_format) {
+            return None;
+        }
+        words[word] = field.put(words[word], value)?;
+    }
+    Some(words)
+}
+
+/// Where each setting stands.
+fn places() -> [Place; 8] {
     [
         (0, field!(CHANNEL_CONFIG.frame.period_cycles)),
         (0, field!(CHANNEL_CONFIG.frame.position_bits)),
@@ -58,9 +82,8 @@ fn places() -> [(usize, &'static Field); 8] {
 
 impl Settings {
     fn of(words: [u32; 3]) -> Self {
-        let values = places().map(|(word, field)| field.of(words[word]));
         let [period_cycles, position_bits, command, first_low_extra_cycles, start_window_cycles, filter_cycles, start_timeout_us, recovery_limit_cycles] =
-            values;
+            values_at(places(), words);
         Self {
             period_cycles,
             position_bits,
@@ -73,9 +96,8 @@ impl Settings {
         }
     }
 
-    /// The words with these settings; none if one of them is nothing that its field takes.
-    fn put(&self, mut words: [u32; 3]) -> Option<[u32; 3]> {
-        let values = [
+    fn values(&self) -> [u32; 8] {
+        [
             self.period_cycles,
             self.position_bits,
             self.command,
@@ -84,14 +106,7 @@ impl Settings {
             self.filter_cycles,
             self.start_timeout_us,
             self.recovery_limit_cycles,
-        ];
-        for ((word, field), value) in places().into_iter().zip(values) {
-            if !field.allows(value, false) {
-                return None;
-            }
-            words[word] = field.put(words[word], value)?;
-        }
-        Some(words)
+        ]
     }
 }
 
@@ -134,7 +149,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             return Err(Error::Argument);
         }
         let words = self.settings_words(channel)?;
-        let words = settings.put(words).ok_or(Error::Argument)?;
+        let words = put_at(places(), settings.values(), words, false).ok_or(Error::Argument)?;
         // A frame between two writes would run with half of the settings.
         self.without_triggers(|card| card.write_settings_words(channel, words))
     }

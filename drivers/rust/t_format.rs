@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::link::Link;
 use crate::map::{field, word};
 use crate::service::REQUEST_PAUSE_US;
+use crate::settings::{put_at, values_at, Place};
 use embedded_hal::delay::DelayNs;
 use endat_regs::causes;
 use endat_regs::t_format::{request, RESETS_IN_A_ROW};
@@ -52,8 +53,8 @@ pub struct TFormatSettings {
     pub field_gap_us: u32,
 }
 
-/// The word of a channel that each setting stands in, and its field.
-fn places() -> [(usize, &'static Field); 5] {
+/// Where each setting stands.
+fn places() -> [Place; 5] {
     [
         (0, field!(CHANNEL_CONFIG.frame.period_cycles)),
         (1, field!(CHANNEL_CONFIG.timing.request_id)),
@@ -65,8 +66,8 @@ fn places() -> [(usize, &'static Field); 5] {
 
 impl TFormatSettings {
     fn of(words: [u32; 3]) -> Self {
-        let values = places().map(|(word, field)| field.of(words[word]));
-        let [bit_cycles, request_id, filter_cycles, reply_gap_us, field_gap_us] = values;
+        let [bit_cycles, request_id, filter_cycles, reply_gap_us, field_gap_us] =
+            values_at(places(), words);
         Self {
             bit_cycles,
             request_id,
@@ -310,17 +311,13 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let is_request = OF_TRIGGERS
             .iter()
             .any(|id| u32::from(*id) == settings.request_id);
-        let fits = |((_, field), value): ((usize, &Field), u32)| field.allows(value, true);
-        let are_allowed = places().into_iter().zip(settings.values()).all(fits);
         // A filter of half a bit leaves nothing of it.
         let is_short = 2 * u64::from(settings.filter_cycles) < settings.bit_cycles.into();
-        if !(is_request && are_allowed && is_short) {
+        if !(is_request && is_short) {
             return Err(Error::Argument);
         }
-        let mut words = self.settings_words(channel)?;
-        for ((word, field), value) in places().into_iter().zip(settings.values()) {
-            words[word] = field.put(words[word], value).ok_or(Error::Argument)?;
-        }
+        let words = self.settings_words(channel)?;
+        let words = put_at(places(), settings.values(), words, true).ok_or(Error::Argument)?;
         self.without_triggers(|card| card.write_settings_words(channel, words))
     }
 }

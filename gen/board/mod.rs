@@ -9,7 +9,9 @@ mod read;
 mod shipped;
 
 pub use clock::{ClockManager, Feedback, Pll};
-pub use family::{Build, Family, CLOCK, CLOCK_VHDL, CONSTRAINTS, FUSESOC, README};
+pub use family::{
+    Build, Family, Vendor, CLOCK, CLOCK_VHDL, CONSTRAINTS, FUSESOC, README, TIMING, VENDOR,
+};
 pub use keys::{page, BOARD_KEYS};
 pub use package::Package;
 pub use ports::{

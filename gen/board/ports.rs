@@ -103,6 +103,58 @@ pub struct Assignment {
     pub position: String,
 }
 
+impl Assignment {
+    /// What it is, in words; `t_format` are the channels that speak it.
+    pub fn meaning(&self, t_format: &[usize]) -> String {
+        let channel: String = self.signal.chars().filter(char::is_ascii_digit).collect();
+        let is_t_format = channel.parse().is_ok_and(|n| t_format.contains(&n));
+        match (self.kind, self.signal.as_str()) {
+            (Kind::Oscillator, _) => "oscillator of the board".into(),
+            (Kind::Transceiver, s) if s.ends_with("_oe") => {
+                format!("driver enable of the DATA transceiver, channel {channel}")
+            }
+            (Kind::Transceiver, s) if s.contains("clk") && is_t_format => {
+                format!("stays HIGH: channel {channel} speaks T-format, which has no clock")
+            }
+            (Kind::Transceiver, s) if s.contains("clk") => {
+                format!("EnDat CLOCK to its driver, channel {channel}; idles high")
+            }
+            (Kind::Transceiver, _) => format!("DATA to the encoder, channel {channel}"),
+            (Kind::EncoderData, _) => format!("DATA from the encoder, channel {channel}"),
+            (Kind::Trigger, _) => "external trigger, rising edge".into(),
+            (Kind::UartInput, _) => "host UART, from the host".into(),
+            (Kind::UartOutput, _) => "host UART, to the host".into(),
+            (Kind::BusInput, "spi_sck_i") => "host SPI, clock, mode 0".into(),
+            (Kind::BusStrobe, "spi_cs_n_i") => "host SPI, selects the card when low".into(),
+            (Kind::BusInput, "spi_mosi_i") => "host SPI, from the host".into(),
+            (Kind::BusInput, "second_sck_i") => "second controller's SPI, clock, mode 0".into(),
+            (Kind::BusStrobe, "second_cs_n_i") => {
+                "second controller's SPI, selects the card when low".into()
+            }
+            (Kind::BusOutput, "second_miso_o") => {
+                "second controller's SPI, to the controller; driven while selected".into()
+            }
+            (Kind::BusOutput, _) => "host SPI, to the host; driven while selected".into(),
+            (Kind::BusStrobe, "bus_cs_n_i") => "host bus, selects the card when low".into(),
+            (Kind::BusStrobe, "bus_rd_n_i") => "host bus, reads when low".into(),
+            (Kind::BusStrobe, "bus_wr_n_i") => "host bus, writes when low".into(),
+            (Kind::BusInput | Kind::BusStrobe, _) => "host bus, register".into(),
+            (Kind::BusData, _) => "host bus, data; driven while read".into(),
+            (Kind::Interrupt, _) => "interrupt to the host".into(),
+            (Kind::Led, "led_status_o") => "status light".into(),
+            (Kind::Led, _) => format!("light of channel {channel}"),
+        }
+    }
+
+    /// Connector and pin, as people look for them.
+    pub fn place(&self) -> String {
+        match self.position.as_str() {
+            "" => self.pin.clone(),
+            position => format!("{position} ({})", self.pin),
+        }
+    }
+}
+
 /// Address lines of the parallel bus.
 pub const PARALLEL_ADDRESS_LINES: usize = 3;
 /// Data lines of the parallel bus.

@@ -62,7 +62,7 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
     let oscillator_pin = t.root.required_string(&keys::OSCILLATOR_PIN);
     let oscillator_hz = t.root.number(&keys::OSCILLATOR_HZ);
     let uart_baud_max = t.root.number(&keys::UART_BAUD_MAX);
-    let iostandard = read_word(&t.root, &keys::IOSTANDARD, "_");
+    let iostandard = read_word(&t.root, &keys::IOSTANDARD, STANDARD);
     let loader = t.root.string(&keys::LOADER).and_then(|word| {
         check_word(&t.root, keys::LOADER.name, &word, "-_")?;
         if word.value.starts_with('-') {
@@ -120,6 +120,9 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
     board.start = take_start(&t.start, &board, start);
     Some(board)
 }
+
+/// What an I/O standard has besides letters and digits, as `3.3-V LVTTL`.
+const STANDARD: &str = "_-. ";
 
 /// A word that goes into emitted files: letters, digits, and what else is allowed.
 fn read_word(table: &Table<'_, '_>, key: &'static Key, more: &str) -> Option<String> {
@@ -355,7 +358,7 @@ fn take_words_of_pins(
             let text = "no pin of this file's connectors and signals; remove the line";
             t.iostandards
                 .complain(at.line, &key, &format!("{:?}", at.value), text);
-        } else if check_word(&t.iostandards, &key, &at, "_").is_some() {
+        } else if check_word(&t.iostandards, &key, &at, STANDARD).is_some() {
             standards.insert(pin, at.value);
         }
     }

@@ -6,6 +6,7 @@ use crate::bitstream::{self, Use};
 use crate::board::{self, Board};
 use crate::config::{self, Project};
 use crate::error::{shown, GenError};
+use crate::wiring;
 use endat_sim::decimal;
 
 /// Seeds that are tried for the table.
@@ -21,6 +22,13 @@ pub fn show(name: &str) -> Result<Outcome, GenError> {
         ))
     })?;
     Ok(Outcome::good(text))
+}
+
+/// The wiring of the shipped card on a board, as SVG.
+pub fn wiring(name: &str) -> Result<Outcome, GenError> {
+    let board = super::board_of(name)?;
+    let project = shipped_card(&board)?;
+    Ok(Outcome::good(wiring::drawing(&project, &board)))
 }
 
 fn all() -> Result<Vec<Board>, GenError> {
@@ -42,17 +50,18 @@ fn mhz(hz: u64) -> String {
 /// A row for each, as Markdown.
 pub fn page() -> Result<Outcome, GenError> {
     let mut text = String::from(
-        "| board | family, device | oscillator, MHz | shipped card at, MHz | its EnDat clock, MHz | constraints | bitstream by |\n|---|---|---|---|---|---|---|\n",
+        "| board | family, device | oscillator, MHz | shipped card at, MHz | its EnDat clock, MHz | constraints | `build` with | wiring |\n|---|---|---|---|---|---|---|---|\n",
     );
     for board in all()? {
         let card = shipped_card(&board)?.card;
         let clock_hz = card.channels.first().map_or(0, |c| c.request.clock_hz);
-        let tools = match &board.family.build {
-            Some(_) => "`build`",
-            None => board.family.tools.as_str(),
-        };
+        let family = &board.family;
+        let open = family.build.as_ref().map(|_| "open tools");
+        let vendor = family.vendor.as_ref().map(|vendor| vendor.tool.as_str());
+        let tools: Vec<&str> = open.into_iter().chain(vendor).collect();
+        let tools = tools.join(", ");
         text += &format!(
-            "| `{}`: {} | {}, {} | {} | {} | {} | {} | {tools} |\n",
+            "| `{}`: {} | {}, {} | {} | {} | {} | {} | {tools} | [drawing](boards/{}.svg) |\n",
             board.name,
             board.title,
             board.family.title,
@@ -61,6 +70,7 @@ pub fn page() -> Result<Outcome, GenError> {
             mhz(card.system_hz),
             mhz(clock_hz),
             board.family.constraints.to_ascii_uppercase(),
+            board.name,
         );
     }
     Ok(Outcome::good(text))
@@ -78,10 +88,13 @@ pub fn measure(name: Option<&str>) -> Result<Outcome, GenError> {
     let (mut exit_code, mut messages) = (0, vec![]);
     let steps = Steps::new(None);
     let mut begin = |step: String| steps.begin(&step);
-    for board in boards.iter().filter(|b| b.family.build.is_some()) {
+    for board in &boards {
+        let Some(build) = &board.family.build else {
+            continue;
+        };
         let project = shipped_card(board)?;
         let artifacts = crate::emit(&project)?;
-        let built = bitstream::build(&project, board, &artifacts, SEEDS, &mut begin);
+        let built = bitstream::build(&project, board, build, &artifacts, SEEDS, &mut begin);
         let report = match built {
             Ok((report, _)) => report,
             // The others are as good as before.

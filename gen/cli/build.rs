@@ -2,13 +2,13 @@
 
 use super::work::Steps;
 use super::{to_json, EmissionArgs, Outcome};
-use crate::artifact;
-use crate::bitstream;
+use crate::artifact::{self, Artifact};
+use crate::bitstream::{self, Maker};
 use crate::board::Board;
 use crate::config::{Configuration, Project, RECEIVER_BUS};
 use crate::error::GenError;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `build`.
 ///
@@ -20,6 +20,12 @@ pub struct BuildArgs {
     /// Seeds of the placer that are tried, one after another, until timing is met
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
     seeds: u32,
+    /// With the vendor's tool, also where open tools know the board
+    #[arg(long)]
+    vendor: bool,
+    /// Build nothing: read the report that the script of the emission has written with the vendor's tool, here or elsewhere
+    #[arg(long)]
+    read: bool,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -38,7 +44,8 @@ pub struct FlashArgs {
 /// Prints the command that loads a bitstream that has been built.
 pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
     let (project, board, folder) = on_board(&arguments.emission)?;
-    let path = folder.join(bitstream::file_name(&project, &board)?);
+    let maker = Maker::of(&board, false)?;
+    let path = folder.join(bitstream::file_name(&project, &board, maker)?);
     let Some(command) = bitstream::loading(&board, &path, arguments.write_flash) else {
         return Err(GenError::input(format!(
             "board = {}: its file does not say how openFPGALoader calls it; add loader = \"...\" (`openFPGALoader --list-boards`), or load the file with the vendor's program",
@@ -53,14 +60,19 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
             path.display()
         )));
     }
-    // What is beside it says what it was built of.
-    if let Some(other) = artifact::differences(&folder, &crate::emit(&project)?).first() {
-        return Err(GenError::input(format!(
-            "{}: is of another configuration, board or version ({other}); {make}",
-            path.display()
-        )));
-    }
+    be_of(&path, &folder, &crate::emit(&project)?, make)?;
     Ok(Outcome::good(command + "\n"))
+}
+
+/// An error if what is beside a file, which says what it was built of, is another emission.
+fn be_of(path: &Path, folder: &Path, artifacts: &[Artifact], remedy: &str) -> Result<(), GenError> {
+    match artifact::differences(folder, artifacts).first() {
+        None => Ok(()),
+        Some(other) => Err(GenError::input(format!(
+            "{}: is of another configuration, board or version ({other}); {remedy}",
+            path.display()
+        ))),
+    }
 }
 
 /// The card that is meant, its board, and the folder of its files.
@@ -91,21 +103,38 @@ fn on_board(emission: &EmissionArgs) -> Result<(Project, Board, PathBuf), GenErr
 /// Runs the command.
 pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     let (project, board, folder) = on_board(&arguments.emission)?;
-    bitstream::tools(&board)?;
+    let maker = Maker::of(&board, arguments.vendor || arguments.read)?;
     let artifacts = crate::emit(&project)?;
     let foreign = artifact::foreign(&folder, &artifacts);
     if !foreign.is_empty() {
         return Err(GenError::Input(foreign));
     }
     let remedy = "give another folder with --out";
-    artifact::write(&folder, &artifacts, remedy)?;
+    if arguments.read {
+        let make = "emit it, and run the script there";
+        be_of(&folder, &folder, &artifacts, make)?;
+    } else {
+        artifact::write(&folder, &artifacts, remedy)?;
+    }
     let steps = Steps::new(None);
     let mut begin = |step: String| steps.begin(&step);
-    let (mut report, bytes) =
-        bitstream::build(&project, &board, &artifacts, arguments.seeds, &mut begin)?;
+    let (mut report, bytes) = match maker {
+        Maker::Open(build) => {
+            let seeds = arguments.seeds;
+            bitstream::build(&project, &board, build, &artifacts, seeds, &mut begin)?
+        }
+        Maker::Vendor(vendor) if arguments.read => {
+            bitstream::read(&project, &board, vendor, &folder)?
+        }
+        Maker::Vendor(vendor) => {
+            bitstream::run_vendor(&project, &board, vendor, &artifacts, &folder, &mut begin)?
+        }
+    };
     drop(steps);
     let path = folder.join(&report.bitstream);
-    std::fs::write(&path, bytes).map_err(|e| GenError::io("write", &path, &e, remedy))?;
+    if !arguments.read {
+        std::fs::write(&path, bytes).map_err(|e| GenError::io("write", &path, &e, remedy))?;
+    }
     report.load = bitstream::loading(&board, &path, false);
     report.bitstream = path.display().to_string();
     let is_met = report.best.is_met;
@@ -113,10 +142,14 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
         true => to_json(&report)?,
         false => report.to_string(),
     };
+    let seeds = match maker {
+        Maker::Open(_) => ", more --seeds",
+        Maker::Vendor(_) => "",
+    };
     let remedy =
-        "timing is not met; take a slower clock.system_hz, more --seeds, or a faster device";
+        format!("timing is not met; take a slower clock.system_hz{seeds}, or a faster device");
     Ok(Outcome {
-        messages: if is_met { vec![] } else { vec![remedy.into()] },
+        messages: if is_met { vec![] } else { vec![remedy] },
         exit_code: u8::from(!is_met),
         ..Outcome::good(stdout)
     })

@@ -90,6 +90,9 @@ enum Command {
         /// Build the shipped card on each board that open tools know, or on this one, and print what it takes as a table: takes minutes
         #[arg(long, value_name = "NAME", num_args = 0..=1, conflicts_with = "show")]
         measure: Option<Option<String>>,
+        /// Draw how the shipped card is wired on this board (name or file), as SVG
+        #[arg(long, value_name = "BOARD", conflicts_with_all = ["show", "measure", "json", "page"])]
+        wiring: Option<String>,
         /// As the table of docs/boards.md
         #[arg(long, conflicts_with_all = ["show", "measure", "json"])]
         page: bool,
@@ -339,6 +342,9 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
             measure: Some(name),
             ..
         }) => boards::measure(name.as_deref()),
+        Some(Command::Boards {
+            wiring: Some(name), ..
+        }) => boards::wiring(&name),
         Some(Command::Boards { page: true, .. }) => boards::page(),
         Some(Command::Boards { json, .. }) => boards::list(json),
         Some(Command::Presets { json, .. }) => presets(json),

@@ -12,6 +12,13 @@ pub enum Form {
     Hex(usize),
 }
 
+impl Form {
+    /// Whether it is what a word may contain, and no place or count.
+    pub fn is_content(self) -> bool {
+        [CONTENT, BIT].contains(&self)
+    }
+}
+
 /// A piece of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Item {
@@ -96,6 +103,8 @@ pub trait Language {
 const WORD: Form = Form::Hex(3);
 const BYTE: Form = Form::Hex(4);
 const CONTENT: Form = Form::Hex(8);
+/// A single bit of a word.
+const BIT: Form = Form::Hex(1);
 
 fn constant(name: String, value: u32, form: Form) -> Item {
     Item::Constant {
@@ -221,7 +230,7 @@ fn values(items: &mut Vec<Item>, name: &str, values: Values) {
             false => value.number,
         },
         form: match is_bits {
-            true => Form::Hex(1),
+            true => BIT,
             false => Form::Decimal,
         },
         meaning: value.meaning,

@@ -3,6 +3,8 @@
 //! ```text
 //! endat_regs (table) -> Map -> markdown.rs  for people
 //!                                -> header.rs    C and C++
+//!                                -> package.rs   SystemVerilog
+//!                                -> vhdl.rs      VHDL
 //!                                -> svd.rs       CMSIS-SVD
 //!                                -> rdl.rs       SystemRDL
 //!                                -> csr.rs       LiteX
@@ -19,6 +21,7 @@ mod markdown;
 mod package;
 mod rdl;
 mod svd;
+mod vhdl;
 
 use crate::artifact::Artifact;
 use crate::config::Project;
@@ -228,6 +231,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         Artifact::new(format!("{name}_registers.md"), markdown::write(&map)),
         Artifact::new(format!("{name}_registers.h"), header::write(&map)),
         Artifact::new(format!("{name}_registers.sv"), package::write(&map)),
+        Artifact::new(format!("{name}_registers.vhd"), vhdl::write(&map)),
         Artifact::new(format!("{name}.svd"), svd::write(&map)?),
         Artifact::new(format!("{name}.rdl"), rdl::write(&map)),
         Artifact::new(

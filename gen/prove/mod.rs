@@ -75,7 +75,7 @@ impl Subject {
     /// A card as it is emitted.
     pub fn new(project: &Project) -> Result<Self, GenError> {
         let design = crate::design(project)?;
-        let files = crate::artifacts_of(project, &design, Language::Verilog)?;
+        let files = crate::sources_of(project, &design, Language::Verilog);
         Ok(Self::of(&project.name, design, files))
     }
 

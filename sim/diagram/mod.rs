@@ -16,6 +16,7 @@ mod svg;
 mod tests;
 mod times;
 mod waves;
+mod wiring;
 
 use crate::{
     bench::Link,
@@ -30,6 +31,7 @@ pub use overview::overview_svg;
 pub use series::{series_svg, Lane, Series};
 pub use svg::is_drawing;
 pub use waves::{waves_svg, Wave};
+pub use wiring::{wiring_svg, WiredChannel, WiredPort};
 
 use groups::{bit_name, fill, groups, is_wrong, segment_fill, stroke};
 use scale::Scale;

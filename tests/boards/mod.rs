@@ -2,6 +2,8 @@
 
 mod bitstream;
 mod files;
+mod readback;
+mod vendor;
 
 use crate::constraints::{lint_top, play};
 use crate::program::good;
@@ -19,7 +21,7 @@ fn boards() -> Vec<Board> {
         .into_iter()
         .map(|name| Board::named(name).unwrap())
         .collect();
-    assert!(boards.len() >= 7);
+    assert!(boards.len() >= 10);
     boards
 }
 
@@ -40,17 +42,19 @@ fn statement(format: &str, signal: &str, pin: &str) -> String {
         "pcf" => format!(" {signal} {pin}\n"),
         "cst" => format!("IO_LOC \"{signal}\" {pin};\nIO_PORT \"{signal}\" IO_TYPE="),
         "xdc" => format!("set_property -dict {{PACKAGE_PIN {pin} IOSTANDARD "),
+        "qsf" => format!("set_location_assignment PIN_{pin} -to {signal}\n"),
         other => panic!("{other}: write down how it names a pin"),
     }
 }
 
 /// What begins such a statement, in any line.
-const PLACES: [&str; 5] = [
+const PLACES: [&str; 6] = [
     "\" LOC = ",
     "LOCATE COMP ",
     "set_io",
     "IO_LOC ",
     "PACKAGE_PIN ",
+    "set_location_assignment ",
 ];
 
 #[test]
@@ -97,7 +101,7 @@ fn no_input_floats_unless_its_family_cannot_help_it() {
             let kinds = board::Kind::NAMES;
             let (kind, _) = kinds.iter().find(|(_, name)| *name == kind).unwrap();
             let words = board.family.attributes(*kind).to_ascii_uppercase();
-            let is_pulled = ["PULLUP", "PULLDOWN", "MODE=UP", "MODE=DOWN"]
+            let is_pulled = ["PULLUP", "PULLDOWN", "PULL_UP", "MODE=UP", "MODE=DOWN"]
                 .iter()
                 .any(|w| words.contains(w));
             assert!(is_pulled, "{}: {kind:?} {words:?}", board.name);
@@ -186,4 +190,38 @@ fn the_page_has_the_table_of_the_boards() {
         let clock = card_on(board).card.system_hz as f64 / 1e6;
         assert!(row.starts_with(&format!("{head}{clock} | ")), "{row}");
     }
+}
+
+/// Catches a port that is drawn nowhere or twice, and a page whose pictures are of other pins.
+#[test]
+fn every_port_of_every_board_is_in_its_drawing() {
+    for board in boards() {
+        let drawing = good(&["boards", "--wiring", &board.name]);
+        for pin in &card_on(&board).pins {
+            let name = format!(">{}</text>", pin.signal);
+            assert_eq!(drawing.matches(&name).count(), 1, "{}: {name}", board.name);
+            assert!(
+                drawing.contains(&format!(">{}</text>", pin.place())),
+                "{}",
+                board.name
+            );
+        }
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let file = root.join(format!("docs/boards/{}.svg", board.name));
+        assert_eq!(
+            crate::tools::committed(&file, &drawing),
+            drawing,
+            "{}",
+            board.name
+        );
+    }
+    // The channel that speaks T-format has no CLOCK, and its pair is called so.
+    let dir = crate::program::Dir::new("wiring");
+    let text = good(&["presets", "--show", "mixed_protocols"]);
+    let config = dir.write("card.toml", text.as_bytes());
+    let out = dir.path("o");
+    good(&["emit", "--config", &config, "--out", &out, "--name", "card"]);
+    let drawing = std::fs::read_to_string(dir.0.join("o/card/card_wiring.svg")).unwrap();
+    assert_eq!(drawing.matches(">CLOCK+</text>").count(), 1);
+    assert_eq!(drawing.matches(">SD+</text>").count(), 1);
 }

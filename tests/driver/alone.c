@@ -71,6 +71,36 @@ static void identities(void)
     CHECK(endat_try_link(&card) == ENDAT_ERROR_READ_BACK, "%s", "writes that do not arrive");
 }
 
+/* Only the next number is that of the request, also where the count begins again; another one is of a card that was restarted. */
+static void requests(void)
+{
+    static const struct {
+        uint32_t before, now, busy;
+        endat_error error;
+    } rows[] = {
+        {5, 5, 0, ENDAT_ERROR_BUSY},      {5, 6, 1, ENDAT_ERROR_BUSY},      {5, 6, 0, ENDAT_OK},
+        {5, 7, 0, ENDAT_ERROR_RESTARTED}, {5, 0, 1, ENDAT_ERROR_RESTARTED}, {0xFFFF, 0, 0, ENDAT_OK},
+        {0, 0xFFFF, 0, ENDAT_ERROR_RESTARTED},
+    };
+    endat_card card;
+    endat_request request;
+    endat_answer answer;
+
+    good_card();
+    memory[ENDAT_MAP_CARD_PROTOCOLS_WORD] = 0;
+    CHECK(endat_open(&card, &link, 0) == ENDAT_OK, "%s", "requests");
+    for (unsigned n = 0; n < sizeof rows / sizeof rows[0]; n++) {
+        uint32_t *const state = &memory[ENDAT_MAP_SERVICE_REQUEST_STATE_WORD(0u)];
+
+        memory[ENDAT_MAP_SERVICE_STATE_WORD(0u)] = 1u << 16;
+        *state = ENDAT_MAP_PUT(ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED, rows[n].before);
+        CHECK(endat_request_begin(&card, &request, 0, 9, 1, 0) == ENDAT_OK, "request %u", n);
+        *state = ENDAT_MAP_PUT(ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED, rows[n].now) |
+                 ENDAT_MAP_PUT(ENDAT_MAP_SERVICE_REQUEST_STATE_BUSY, rows[n].busy);
+        CHECK(endat_request_poll(&card, &request, &answer) == rows[n].error, "answer %u", n);
+    }
+}
+
 /* The result of the programming page: 29 bits, fits; then with every bit of it wrong. */
 static void positions(void)
 {
@@ -286,6 +316,7 @@ static void confirmed_writes(void)
 void alone(void)
 {
     identities();
+    requests();
     positions();
     numbers();
     texts();

@@ -25,6 +25,7 @@ const NAMES: [&str; 14] = [
 /// Imports the module and makes the instance; reads the FuseSoC core and the register map.
 const SCRIPT: &str = "
 import importlib, sys, yaml
+from amaranth.back import rtlil
 from migen.fhdl.verilog import convert
 from systemrdl import RDLCompiler
 name, title = sys.argv[1:]
@@ -32,6 +33,8 @@ module = importlib.import_module(name + '_litex')
 core = getattr(module, title)()
 text = str(convert(core, {core.trigger_i}, name='soc'))
 assert name + ' ' in text, text
+component = importlib.import_module(name + '_amaranth')
+assert name in rtlil.convert(getattr(component, title)())
 described = yaml.safe_load(open(name + '.core').read().split('\\n', 1)[1])
 assert described['targets']['default']['toplevel'] == name, described
 compiler = RDLCompiler()
@@ -42,7 +45,7 @@ assert compiler.elaborate().top.inst_name == name
 #[test]
 fn names_that_are_words_elsewhere_are_names_here() {
     let check = "names of cards";
-    let has_all = ["migen", "yaml", "systemrdl"]
+    let has_all = ["amaranth", "migen", "yaml", "systemrdl"]
         .iter()
         .all(|m| require_python(m, check));
     if !has_all {

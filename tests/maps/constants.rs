@@ -1,4 +1,4 @@
-//! The register map as constants: the C header, and the SystemVerilog package.
+//! The register map as constants: the C header, and the packages of SystemVerilog and VHDL.
 
 use super::{projects, text_of, Word};
 use crate::tools::{self, require};
@@ -16,39 +16,47 @@ struct Wanted {
     /// Of which channel, where it takes one.
     channel: Option<usize>,
     value: u32,
+    /// It is what a word may contain, and no place or count.
+    is_content: bool,
 }
 
 fn wanted(project: &Project) -> Vec<Wanted> {
     let mut all = vec![];
-    let mut want = |name: String, channel, value| {
+    let mut push = |name: String, channel, value, is_content| {
         all.push(Wanted {
             name,
             channel,
             value,
+            is_content,
         });
     };
     for (part, number) in ["MAJOR", "MINOR", "PATCH"].iter().zip(VERSION) {
-        want(format!("MAP_{part}"), None, number.into());
+        push(format!("MAP_{part}"), None, number.into(), false);
     }
     let channels = project.card.channels.len();
-    want("CHANNELS".into(), None, channels as u32);
+    push("CHANNELS".into(), None, channels as u32, false);
     for word in Word::all(&project.card) {
         let name = word_name(&word);
-        want(format!("{name}_WORD"), word.channel, word.address());
-        want(format!("{name}_BYTE"), word.channel, word.address() * 4);
+        push(format!("{name}_WORD"), word.channel, word.address(), false);
+        push(
+            format!("{name}_BYTE"),
+            word.channel,
+            word.address() * 4,
+            false,
+        );
         let start_of = |n| start(word.block, word.register, &project.card, n);
         let start = start_of(word.channel.unwrap_or(0));
         let resets: Vec<u32> = (0..channels).map(start_of).collect();
         let is_one = word.channel.is_none() || resets.windows(2).all(|w| w[0] == w[1]);
         match word.channel {
             _ if word.block.name == "service" => {}
-            Some(n) if !is_one => want(format!("{name}_RESET_{n}"), None, start),
-            _ => want(format!("{name}_RESET"), None, start),
+            Some(n) if !is_one => push(format!("{name}_RESET_{n}"), None, start, true),
+            _ => push(format!("{name}_RESET"), None, start, true),
         }
         for field in word.register.fields {
             let name = format!("{name}_{}", field.name.to_uppercase());
-            want(format!("{name}_MASK"), None, field.mask());
-            want(format!("{name}_SHIFT"), None, field.lsb);
+            push(format!("{name}_MASK"), None, field.mask(), true);
+            push(format!("{name}_SHIFT"), None, field.lsb, false);
             let (listed, is_bits) = match field.values {
                 Values::Plain => continue,
                 Values::Codes(listed) => (listed, false),
@@ -59,11 +67,8 @@ fn wanted(project: &Project) -> Vec<Wanted> {
                     true => 1 << value.number,
                     false => value.number,
                 };
-                want(
-                    format!("{name}_{}", value.name.to_uppercase()),
-                    None,
-                    number,
-                );
+                let name = format!("{name}_{}", value.name.to_uppercase());
+                push(name, None, number, is_bits);
             }
         }
     }
@@ -205,6 +210,49 @@ fn the_package_says_what_the_table_says() {
             let (is_good, text) = tools::run("verilator", &folder, &flags);
             assert!(is_good && text.is_empty(), "{file}: {text}");
         }
+    }
+}
+
+/// Catches a constant that the package lacks, or has otherwise or of another type, and a function that forgets the channel.
+#[test]
+fn the_package_of_vhdl_says_what_the_table_says() {
+    if !require("ghdl", "register package") {
+        return;
+    }
+    for (project, standard) in projects()
+        .iter()
+        .zip(["--std=93", "--std=08"].iter().cycle())
+    {
+        let folder = tools::folder(&format!("maps-vhdl-{}", project.name));
+        let package = format!("{}_registers", project.name);
+        let mut code = format!(
+            "library ieee;\nuse ieee.std_logic_1164.all;\nuse work.{package}.all;\nentity show is\nend entity;\n\
+             architecture bench of show is\nbegin\n    process\n    begin\n"
+        );
+        for one in wanted(project) {
+            let (name, value) = (&one.name, one.value);
+            let argument = one.channel.map_or(String::new(), |n| format!("({n})"));
+            let value = match one.is_content {
+                true => format!("word_t'(x\"{value:08X}\")"),
+                false => value.to_string(),
+            };
+            writeln!(code, "        assert {name}{argument} = {value} report \"{name}{argument}\" severity error;").unwrap();
+        }
+        code.push_str(
+            "        report \"all\";\n        wait;\n    end process;\nend architecture;\n",
+        );
+        let file = format!("{package}.vhd");
+        fs::write(folder.join(&file), text_of(project, "_registers.vhd")).unwrap();
+        fs::write(folder.join("show.vhd"), code).unwrap();
+        let (is_good, text) = tools::run("ghdl", &folder, &["-a", standard, &file, "show.vhd"]);
+        assert!(is_good && text.is_empty(), "{file}: {text}");
+        let (is_good, text) = tools::run("ghdl", &folder, &["-e", standard, "show"]);
+        assert!(is_good, "{text}");
+        let (is_good, text) = tools::run("ghdl", &folder, &["-r", standard, "show"]);
+        assert!(
+            is_good && !text.contains("error") && text.contains("all"),
+            "{text}"
+        );
     }
 }
 

@@ -306,7 +306,7 @@ fn maps_list_every_word_and_field_that_the_card_has() {
             .map(|a| a.text.to_lowercase().contains(name))
             .collect()
     };
-    assert_eq!(has(&project, "frames_good"), [false; 5]);
+    assert_eq!(has(&project, "frames_good"), [false; 6]);
     project.card.service.requests = true;
     for (part, name) in [
         (0, "serial_0"),
@@ -321,8 +321,8 @@ fn maps_list_every_word_and_field_that_the_card_has() {
             &mut parts.diagnosis,
             &mut parts.continuous,
         ][part] = true;
-        assert_eq!(has(&project, name), [false; 5], "nobody fills {name}");
-        assert_eq!(has(&with, name), [true; 5], "{name}");
+        assert_eq!(has(&project, name), [false; 6], "nobody fills {name}");
+        assert_eq!(has(&with, name), [true; 6], "{name}");
     }
     let unlike = &projects()[2];
     let page = text_of(unlike, "_registers.md");

@@ -40,6 +40,7 @@ fn the_preset_is_emitted_and_checked() {
         ".core",
         "_vivado.tcl",
         "_litex.py",
+        "_amaranth.py",
     ] {
         let file = format!("async_dsp{end}");
         assert!(folder.join(&file).exists(), "{file}");

@@ -6,7 +6,7 @@ mod formal;
 mod fronts;
 mod lint;
 pub mod mutations;
-mod netlist;
+pub mod netlist;
 mod ports;
 mod purpose_bench;
 mod t_format_bench;

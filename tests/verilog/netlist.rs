@@ -117,9 +117,37 @@ fn pins() -> (Vec<String>, Vec<String>) {
     (inputs, outputs)
 }
 
-fn joined(names: &[String], form: impl Fn(&String) -> String) -> String {
-    let formed: Vec<String> = names.iter().rev().map(form).collect();
-    formed.join(", ")
+/// A module that records, beside a card's own bench, what goes into the card and what it makes of it: a line for each of so many cycles.
+pub fn recorder(card: &str, inputs: &[String], outputs: &[String], cycles: usize) -> String {
+    let joined = |names: &[String]| {
+        let pins = names.iter().rev();
+        let pins: Vec<String> = pins.map(|name| format!("{card}_tb.dut.{name}")).collect();
+        pins.join(", ")
+    };
+    format!(
+        "`timescale 1ns / 1ps
+module recorder;
+    integer file, cycle;
+    initial begin file = $fopen(\"recording.txt\"); cycle = 0; end
+    // Values just before the edge: nothing has moved yet.
+    always @(posedge {card}_tb.clk) begin
+        $fwrite(file, \"%b%b\\n\", {{{}}}, {{{}}});
+        cycle = cycle + 1;
+        if (cycle == {cycles}) begin $fclose(file); $finish; end
+    end
+endmodule
+",
+        joined(outputs),
+        joined(inputs)
+    )
+}
+
+/// Ports of an instance, connected to the bits of a vector.
+pub fn connections(names: &[String], vector: &str) -> String {
+    let names = names.iter().enumerate();
+    names
+        .map(|(k, name)| format!(", .{name}({vector}[{k}])"))
+        .collect()
 }
 
 /// Stimulus and outputs of the RTL, one line a cycle, recorded while the card runs in its own test bench.
@@ -128,23 +156,7 @@ fn recording() -> &'static str {
     TEXT.get_or_init(|| {
         let (folder, mut files) = write("recorder", quick_files());
         let (inputs, outputs) = pins();
-        let pin = |name: &String| format!("{DEFAULT_PRESET}_tb.dut.{name}");
-        let text = format!(
-            "`timescale 1ns / 1ps
-module recorder;
-    integer file, cycle;
-    initial begin file = $fopen(\"recording.txt\"); cycle = 0; end
-    // Values just before the edge: nothing has moved yet.
-    always @(posedge {DEFAULT_PRESET}_tb.clk) begin
-        $fwrite(file, \"%b%b\\n\", {{{}}}, {{{}}});
-        cycle = cycle + 1;
-        if (cycle == {CYCLES}) begin $fclose(file); $finish; end
-    end
-endmodule
-",
-            joined(&outputs, pin),
-            joined(&inputs, pin)
-        );
+        let text = recorder(DEFAULT_PRESET, &inputs, &outputs, CYCLES);
         fs::write(folder.join("recorder.v"), text).unwrap();
         files.extend([format!("{DEFAULT_PRESET}_tb.v"), "recorder.v".into()]);
         compile(
@@ -167,12 +179,6 @@ endmodule
 fn player() -> String {
     let (inputs, outputs) = pins();
     let (i, o) = (inputs.len(), outputs.len());
-    let connect = |names: &[String], bus: &str| -> String {
-        let names = names.iter().enumerate();
-        names
-            .map(|(k, name)| format!(", .{name}({bus}[{k}])"))
-            .collect()
-    };
     format!(
         "`timescale 1ns / 1ps
 module player;
@@ -206,14 +212,14 @@ endmodule
         i_top = i - 1,
         o_top = o - 1,
         last = CYCLES - 1,
-        ins = connect(&inputs, "in"),
-        outs = connect(&outputs, "out"),
+        ins = connections(&inputs, "in"),
+        outs = connections(&outputs, "out"),
     )
 }
 
 /// The folder of Debian's yosys' own files: where yosys itself looks for them, beside its program. Its cell models are the
 /// ones that iverilog reads for every family.
-fn share() -> PathBuf {
+pub fn share() -> PathBuf {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let programs = std::env::split_paths(&path).map(|folder| folder.join("yosys"));
     let program = programs

@@ -1,0 +1,70 @@
+//! A bitstream by the tool of the vendor, which runs the script of the emission: here, or on a machine that has it.
+
+use super::{failed, file_name, fill, made, read_report, Maker, Report};
+use crate::artifact::{self, Artifact};
+use crate::board::{Board, Vendor};
+use crate::config::Project;
+use crate::error::GenError;
+use crate::scratch;
+use crate::tools;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::process::Command;
+
+/// Name of the report that the script writes.
+fn report_name(project: &Project) -> String {
+    format!("{}_report.json", project.name)
+}
+
+/// What a report says that the script has left in a folder, and the bitstream beside it.
+pub fn read(
+    project: &Project,
+    board: &Board,
+    vendor: &Vendor,
+    folder: &Path,
+) -> Result<(Report, Vec<u8>), GenError> {
+    let bitstream = file_name(project, board, Maker::Vendor(vendor))?;
+    let report = folder.join(report_name(project));
+    let best = read_report(&report, 1, project.card.system_hz)?;
+    let bytes = made(folder, &bitstream)?;
+    Ok((Report::new(project, board, 1, best, bitstream), bytes))
+}
+
+/// Runs the script on a copy of the emission. Returns the report and the bitstream's bytes; `emitted` is where the emission is.
+pub fn run(
+    project: &Project,
+    board: &Board,
+    vendor: &Vendor,
+    artifacts: &[Artifact],
+    emitted: &Path,
+    progress: &mut dyn FnMut(String),
+) -> Result<(Report, Vec<u8>), GenError> {
+    let words = fill(project, board, &vendor.run)?;
+    // A script of somebody else's family may do anything.
+    if board.family.is_own() {
+        return Err(GenError::input(format!(
+            "{}: its script is not one of this program, so you run it: `{}` in {}, and then the same command with --read",
+            board.family.name,
+            words.join(" "),
+            emitted.display()
+        )));
+    }
+    let (name, arguments) = words
+        .split_first()
+        .ok_or_else(|| GenError::input("vendor.run: no tool"))?;
+    let scratch = scratch::folder()?;
+    artifact::write(scratch.path(), artifacts, scratch::REMEDY)?;
+    progress(format!("{}: {}", project.name, vendor.tool));
+    let mut command = Command::new(name);
+    match tools::start(command.current_dir(scratch.path()).args(arguments)) {
+        Ok(ran) if ran.is_good => read(project, board, vendor, scratch.path()),
+        Ok(ran) => Err(failed(name, &ran)),
+        Err(e) if e.kind() == ErrorKind::NotFound => Err(GenError::input(format!(
+            "{name}: is not installed here; on a machine with {}, run `{}` in {} (it is complete), and then the same command with --read",
+            vendor.tool,
+            words.join(" "),
+            emitted.display()
+        ))),
+        Err(e) => Err(GenError::input(format!("{name}: cannot be started: {e}; look at the installation of {}", vendor.tool))),
+    }
+}

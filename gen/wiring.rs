@@ -1,0 +1,37 @@
+//! The wiring of a card on its board, drawn.
+
+use crate::board::{Assignment, Board, Kind};
+use crate::config::Project;
+use endat_sim::diagram::{wiring_svg, WiredChannel, WiredPort};
+
+/// The drawing of a card's pins, as SVG.
+pub fn drawing(project: &Project, board: &Board) -> String {
+    let t_format: Vec<usize> = project.card.t_format_numbers().collect();
+    let port = |pin: &Assignment| WiredPort {
+        signal: pin.signal.clone(),
+        place: pin.place(),
+        meaning: pin.meaning(&t_format),
+    };
+    let named = |name: String| project.pins.iter().find(|pin| pin.signal == name).map(port);
+    let channels = (0..project.card.channels.len()).filter_map(|n| {
+        Some(WiredChannel {
+            number: n,
+            clock: named(format!("endat_clk{n}_o")).filter(|_| !t_format.contains(&n)),
+            data: named(format!("endat_data{n}_o"))?,
+            enable: named(format!("endat_data{n}_oe"))?,
+            answer: named(format!("endat_data{n}_i"))?,
+        })
+    });
+    let others = project.pins.iter().filter(|pin| {
+        let is_open =
+            pin.signal.starts_with("endat_clk") && pin.meaning(&t_format).starts_with("stays");
+        is_open || !matches!(pin.kind, Kind::Transceiver | Kind::EncoderData)
+    });
+    let title = format!("Wiring of {} on {}", project.name, board.title);
+    let subtitle = format!(
+        "{}; blue: connector position (pin of the device)",
+        board.part
+    );
+    let (channels, others): (Vec<_>, Vec<_>) = (channels.collect(), others.map(port).collect());
+    wiring_svg(&channels, &others, &title, &subtitle)
+}
