@@ -147,7 +147,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("name = \"s6_two_channel\"", "name = \"two channel\"", "has the character ' '"),
         ("name = \"s6_two_channel\"", "name = \"a\\u0000b\"", "has the character '\\0'"),
         // board and pins
-        ("name = \"papilio_pro\"", "name = \"papilio\"", "board.name = \"papilio\": unknown board; known boards: arty_a7_35, hx8k_b_evn, icebreaker, papilio_pro"),
+        ("name = \"papilio_pro\"", "name = \"papilio\"", "board.name = \"papilio\": unknown board; known boards: arty_a7_35, de10_nano, hx8k_b_evn, icebreaker, papilio_pro"),
         ("[pins]", "[pins]\ntrigger_i = \"P145\"", "pins.trigger_i = \"P145\": no such pin; the package of xc6slx9-tqg144-2 has P1..P144"),
         ("[pins]", "[pins]\ntrigger_i = \"P2\"", "is not on a connector of papilio_pro; use A0..A15"),
         ("[pins]", "[pins]\ntrigger_i = \"D1\"", "is neither a pin (P48) nor a connector position (A0)"),

@@ -20,6 +20,12 @@ proc number text {
     return [expr {int([string map {, ""} $text])}]
 }
 
+# Ends with what is wrong, and without a trace of the script.
+proc refuse text {
+    puts stderr "s6_two_channel: $text"
+    exit 1
+}
+
 proc text_of name {
     set file [open $name]
     set text [read $file]
@@ -64,10 +70,10 @@ foreach section [lrange $sections 1 end] {
     } elseif {[regexp {^(TS_\S+)$} $period all other]} {
         set periods($constraint) $periods($other)
     } else {
-        error "a period that this script cannot read: $period"
+        refuse "a period that this script cannot read: $period"
     }
     if {[regexp {([0-9]+) hold errors?} $section all count] && $count > 0} {
-        error "$constraint: $count hold times are not met: see s6_two_channel.twr"
+        refuse "$constraint: $count hold times are not met: see s6_two_channel.twr"
     }
     # What nothing is timed by, as the oscillator in front of the PLL, has no least period or one of the PLL alone.
     if {[regexp {Minimum period is\s+([0-9.]+)ns} $section all least]} {
