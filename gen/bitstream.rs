@@ -6,7 +6,7 @@ mod vendor;
 pub use vendor::{read, run as run_vendor};
 
 use crate::artifact::{self, Artifact};
-use crate::board::{Board, Build, Vendor};
+use crate::board::{Board, Build, Vendor, OSCILLATOR_PORT};
 use crate::config::Project;
 use crate::error::GenError;
 use crate::readers::is_bench;
@@ -16,7 +16,7 @@ use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::Serde;
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{json, Value};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::io::ErrorKind;
@@ -51,7 +51,7 @@ pub struct Use {
 /// What one seed gave.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attempt {
-    /// Seed of the placer.
+    /// Seed of the placer; 0 with a tool that takes none.
     pub seed: u32,
     /// Whether every clock is fast enough.
     pub is_met: bool,
@@ -86,7 +86,7 @@ pub struct Report {
     pub part: String,
     /// System clock, in hertz.
     pub system_hz: u64,
-    /// How many seeds were tried.
+    /// How many seeds were tried; 0 with a tool that takes none.
     pub seeds: u32,
     /// The best of them.
     pub best: Attempt,
@@ -134,11 +134,11 @@ impl fmt::Display for Report {
             )?;
         }
         let met = if self.best.is_met { "met" } else { "NOT met" };
-        writeln!(
-            f,
-            "timing {met} with seed {}, {} tried; bitstream {}",
-            self.best.seed, self.seeds, self.bitstream
-        )?;
+        let seeds = match self.seeds {
+            0 => String::new(),
+            tried => format!(" with seed {}, {tried} tried", self.best.seed),
+        };
+        writeln!(f, "timing {met}{seeds}; bitstream {}", self.bitstream)?;
         match &self.load {
             Some(command) => writeln!(f, "load it: {command}"),
             None => Ok(()),
@@ -163,8 +163,8 @@ impl<'a> Maker<'a> {
             (Some(build), _) if !asks_vendor => Ok(Self::Open(build)),
             (_, Some(vendor)) => Ok(Self::Vendor(vendor)),
             (Some(_), None) => Err(GenError::input(format!(
-                "--vendor: {} has no script for a vendor's tool; leave it out, and open tools make the bitstream",
-                family.title
+                "board = {}: {} has no script for a vendor's tool; leave --vendor and --read out, and open tools make the bitstream",
+                board.name, family.title
             ))),
             (None, None) => Err(GenError::input(format!(
                 "board = {}: {} has neither open tools nor a vendor's; add [build] or [vendor] to its family.toml",
@@ -336,19 +336,63 @@ fn failed(name: &str, ran: &tools::Ran) -> GenError {
     ))
 }
 
-/// What nextpnr reports, or the script of a vendor's tool.
+/// What nextpnr reports.
 fn read_report(path: &Path, seed: u32, system_hz: u64) -> Result<Attempt, GenError> {
     let text = scratch::read(path)?;
-    let wrong = |what: &str| {
-        GenError::input(format!(
-            "{}: {what}; build once more, and look at what the tool says of its clocks",
-            path.display()
-        ))
-    };
+    let report: Value =
+        serde_json::from_str(&text).map_err(|e| GenError::fault("report of nextpnr", &e))?;
+    attempt(&report, seed, system_hz)
+        .ok_or_else(|| GenError::fault("report of nextpnr", &NO_SYSTEM_CLOCK))
+}
+
+/// What is wrong with such a report.
+const NO_SYSTEM_CLOCK: &str = "it has no clock as fast as the system clock besides the oscillator";
+
+/// Name of the report beside a bitstream.
+fn report_name(project: &Project) -> String {
+    format!("{}_report.json", project.name)
+}
+
+/// Name and text of that report: what the script of a vendor's tool writes, too.
+pub fn report_file(project: &Project, report: &Report, bitstream: &[u8]) -> (String, String) {
+    let clocks = report.best.clocks.iter();
+    let clocks: serde_json::Map<_, _> = clocks
+        .map(|c| {
+            let clock = json!({"achieved": c.fmax_mhz, "constraint": c.wanted_mhz});
+            (c.net.clone(), clock)
+        })
+        .collect();
+    let text = json!({
+        "configuration": project.hash,
+        "part": report.part,
+        "bitstream_bytes": bitstream.len(),
+        "fmax": clocks,
+        "utilization": report.best.cells,
+    });
+    (report_name(project), format!("{text:#}\n"))
+}
+
+/// The report in a folder; an error if it is of another configuration or device than the bitstream there should be, or of another bitstream.
+pub fn report_of(
+    project: &Project,
+    board: &Board,
+    folder: &Path,
+    bitstream: &str,
+) -> Result<Value, GenError> {
+    let path = folder.join(report_name(project));
+    let wrong = |what: &str| GenError::input(format!("{}: {what}; build it again", path.display()));
+    let text = std::fs::read_to_string(&path).map_err(|e| wrong(&format!("cannot read: {e}")))?;
     let report: Value =
         serde_json::from_str(&text).map_err(|e| wrong(&format!("is no report: {e}")))?;
-    attempt(&report, seed, system_hz)
-        .ok_or_else(|| wrong("has no clock as fast as the system clock"))
+    if report["configuration"] != project.hash.as_str() || report["part"] != board.part.as_str() {
+        return Err(wrong("is of another configuration, board or version"));
+    }
+    let bytes = std::fs::metadata(folder.join(bitstream)).map_or(0, |file| file.len());
+    if bytes == 0 || report["bitstream_bytes"] != bytes {
+        let text = format!("is of another bitstream than {bitstream}, which has {bytes} bytes");
+        return Err(wrong(&text));
+    }
+    Ok(report)
 }
 
 /// The clocks and cells of a report; none if it does not have the system clock.
@@ -366,10 +410,10 @@ fn attempt(report: &Value, seed: u32, system_hz: u64) -> Option<Attempt> {
     let clocks: Vec<Clock> = clocks.collect::<Option<_>>()?;
     let system_mhz = system_hz as f64 / 1e6;
     // Periods are kept in whole picoseconds.
-    if !clocks
-        .iter()
-        .any(|clock| clock.wanted_mhz > system_mhz * 0.999)
-    {
+    let is_system = |clock: &Clock| {
+        clock.wanted_mhz > system_mhz * 0.999 && !clock.net.starts_with(OSCILLATOR_PORT)
+    };
+    if !clocks.iter().any(is_system) {
         return None;
     }
     let cells = report["utilization"].as_object().into_iter().flatten();
@@ -390,7 +434,6 @@ fn attempt(report: &Value, seed: u32, system_hz: u64) -> Option<Attempt> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     #[test]
     fn timing_is_met_when_every_clock_is_and_the_system_clock_is_there() {

@@ -285,16 +285,6 @@ fn of_board(
         false => (of_family(CLOCK)?, String::new()),
     };
     let build_name = format!("{name}_build.tcl");
-    let script = {
-        let report = template::render("report.tcl", REPORT, &facts)?;
-        let facts = context! { report, ..facts.clone() };
-        family.render_any(VENDOR, &facts)?
-    };
-    let timing = family.render_any(TIMING, &facts)?;
-    let timing_name = family
-        .timing
-        .as_ref()
-        .map(|end| format!("{name}_top.{end}"));
     let vendor = match &family.vendor {
         Some(vendor) => Some(context! {
             tool => vendor.tool.as_str(),
@@ -303,8 +293,21 @@ fn of_board(
         }),
         None => None,
     };
+    let facts = context! { vendor, ..facts.clone() };
+    let script = match family.has(VENDOR) {
+        true => {
+            let report = template::render("report.tcl", REPORT, &facts)?;
+            let facts = context! { report, ..facts.clone() };
+            Some(family.render(VENDOR, &facts)?)
+        }
+        false => None,
+    };
+    let timing = family.render_any(TIMING, &facts)?;
+    let timing_name = family
+        .timing
+        .as_ref()
+        .map(|end| format!("{name}_top.{end}"));
     let facts = context! {
-        vendor,
         timing_name => timing_name.clone(),
         clock_manager,
         clock_declarations,

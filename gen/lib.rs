@@ -51,6 +51,7 @@ use error::GenError;
 use language::Language;
 use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
+use std::collections::BTreeSet;
 
 /// All files of a project, the MANIFEST last.
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
@@ -79,6 +80,13 @@ pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, G
     if language == Language::Vhdl {
         let played = vhdl::card(project, &design)?;
         artifacts.extend(vhdl::bench(&core, &design, &played)?);
+    }
+    let mut names = BTreeSet::new();
+    if let Some(twice) = artifacts.iter().find(|a| !names.insert(&a.path)) {
+        return Err(GenError::input(format!(
+            "{}: two files have this name; give constraints or timing in the family's file another end",
+            twice.path
+        )));
     }
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
@@ -111,11 +119,7 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
 }
 
 /// The card in a language, and its register map in every format.
-fn sources_of(
-    project: &Project,
-    design: &Design,
-    language: Language,
-) -> Vec<Artifact> {
+fn sources_of(project: &Project, design: &Design, language: Language) -> Vec<Artifact> {
     let report = explain::report(project).to_string();
     let channels = project.card.channels.len();
     let title = match project.bus {

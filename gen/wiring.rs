@@ -29,7 +29,7 @@ pub fn drawing(project: &Project, board: &Board) -> String {
     });
     let title = format!("Wiring of {} on {}", project.name, board.title);
     let subtitle = format!(
-        "{}; blue: connector position (pin of the device)",
+        "{}; blue: connector and position, from 0 (pin of the device)",
         board.part
     );
     let (channels, others): (Vec<_>, Vec<_>) = (channels.collect(), others.map(port).collect());

@@ -1,6 +1,6 @@
 //! A bitstream by the tool of the vendor, which runs the script of the emission: here, or on a machine that has it.
 
-use super::{failed, file_name, fill, made, read_report, Maker, Report};
+use super::{attempt, failed, file_name, fill, made, report_of, Maker, Report, NO_SYSTEM_CLOCK};
 use crate::artifact::{self, Artifact};
 use crate::board::{Board, Vendor};
 use crate::config::Project;
@@ -11,11 +11,6 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::Command;
 
-/// Name of the report that the script writes.
-fn report_name(project: &Project) -> String {
-    format!("{}_report.json", project.name)
-}
-
 /// What a report says that the script has left in a folder, and the bitstream beside it.
 pub fn read(
     project: &Project,
@@ -24,10 +19,15 @@ pub fn read(
     folder: &Path,
 ) -> Result<(Report, Vec<u8>), GenError> {
     let bitstream = file_name(project, board, Maker::Vendor(vendor))?;
-    let report = folder.join(report_name(project));
-    let best = read_report(&report, 1, project.card.system_hz)?;
+    let report = report_of(project, board, folder, &bitstream)?;
+    let best = attempt(&report, 0, project.card.system_hz).ok_or_else(|| {
+        GenError::input(format!(
+            "{}_report.json: {NO_SYSTEM_CLOCK}; look at what {} says of its clocks",
+            project.name, vendor.tool
+        ))
+    })?;
     let bytes = made(folder, &bitstream)?;
-    Ok((Report::new(project, board, 1, best, bitstream), bytes))
+    Ok((Report::new(project, board, 0, best, bitstream), bytes))
 }
 
 /// Runs the script on a copy of the emission. Returns the report and the bitstream's bytes; `emitted` is where the emission is.

@@ -45,7 +45,8 @@ pub struct FlashArgs {
 pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
     let (project, board, folder) = on_board(&arguments.emission)?;
     let maker = Maker::of(&board, false)?;
-    let path = folder.join(bitstream::file_name(&project, &board, maker)?);
+    let name = bitstream::file_name(&project, &board, maker)?;
+    let path = folder.join(&name);
     let Some(command) = bitstream::loading(&board, &path, arguments.write_flash) else {
         return Err(GenError::input(format!(
             "board = {}: its file does not say how openFPGALoader calls it; add loader = \"...\" (`openFPGALoader --list-boards`), or load the file with the vendor's program",
@@ -61,6 +62,7 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
         )));
     }
     be_of(&path, &folder, &crate::emit(&project)?, make)?;
+    bitstream::report_of(&project, &board, &folder, &name)?;
     Ok(Outcome::good(command + "\n"))
 }
 
@@ -105,6 +107,12 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     let (project, board, folder) = on_board(&arguments.emission)?;
     let maker = Maker::of(&board, arguments.vendor || arguments.read)?;
     let artifacts = crate::emit(&project)?;
+    let bitstream = bitstream::file_name(&project, &board, maker)?;
+    if artifacts.iter().any(|a| a.path == bitstream) {
+        return Err(GenError::input(format!(
+            "bitstream = {bitstream:?}: is a file of the emission; give it another name in the family's file"
+        )));
+    }
     let foreign = artifact::foreign(&folder, &artifacts);
     if !foreign.is_empty() {
         return Err(GenError::Input(foreign));
@@ -133,6 +141,9 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     drop(steps);
     let path = folder.join(&report.bitstream);
     if !arguments.read {
+        let (name, text) = bitstream::report_file(&project, &report, &bytes);
+        let about = folder.join(name);
+        std::fs::write(&about, text).map_err(|e| GenError::io("write", &about, &e, remedy))?;
         std::fs::write(&path, bytes).map_err(|e| GenError::io("write", &path, &e, remedy))?;
     }
     report.load = bitstream::loading(&board, &path, false);

@@ -1,5 +1,8 @@
 # Bitstream of s6_two_channel_top on Gadget Factory Papilio Pro with ISE 14.7: xtclsh s6_two_channel_build.tcl
-# What `endat-gen build` reads: clocks as (name, MHz reached, MHz wanted), cells as (kind, used, there).
+# What there is of another run is none of this one.
+file delete -force s6_two_channel_report.json s6_two_channel.bit
+
+# What `endat-gen build` reads, when the bitstream is there: clocks as (name, MHz reached, MHz wanted), cells as (kind, used, there).
 proc write_report {clocks cells} {
     set rows {}
     foreach {name reached wanted} $clocks {
@@ -11,7 +14,7 @@ proc write_report {clocks cells} {
         lappend kinds "    \"$kind\": {\"used\": [number $used], \"available\": [number $available]}"
     }
     set file [open s6_two_channel_report.json w]
-    puts $file "{\n  \"fmax\": {\n[join $rows ",\n"]\n  },\n  \"utilization\": {\n[join $kinds ",\n"]\n  }\n}"
+    puts $file "{\n  \"configuration\": \"6612dd16497a\",\n  \"part\": \"xc6slx9-tqg144-2\",\n  \"bitstream_bytes\": [file size s6_two_channel.bit],\n  \"fmax\": {\n[join $rows ",\n"]\n  },\n  \"utilization\": {\n[join $kinds ",\n"]\n  }\n}"
     close $file
 }
 
@@ -88,5 +91,5 @@ foreach kind {"Slice LUTs" "Slice Registers" "RAMB16BWERs" "bonded IOBs"} {
         lappend cells $kind $used $available
     }
 }
-write_report $clocks $cells
 tool bitgen -w s6_two_channel_par.ncd s6_two_channel.bit
+write_report $clocks $cells

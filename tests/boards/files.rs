@@ -230,6 +230,14 @@ fn a_family_of_ones_own_is_a_folder_and_what_is_wrong_with_it_is_told() {
             "{place}\n{told}"
         );
     }
+    // Two files of one name.
+    let twice = good_text.replace("constraints = \"lpf\"", "constraints = \"sdc\"");
+    dir.write("mine/family.toml", twice.as_bytes());
+    let told = bad(&["emit", "--board", &board, "--out", &dir.path("o")], 2);
+    assert!(
+        told.contains(".sdc: two files have this name; give constraints or timing"),
+        "{told}"
+    );
     dir.write("mine/family.toml", good_text.as_bytes());
     dir.write("mine/clock.v.jinja", b"{{ pll.divide");
     let told = bad(&["emit", "--board", &board, "--out", &dir.path("o")], 2);

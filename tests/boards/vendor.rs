@@ -1,7 +1,7 @@
 //! Bitstreams with tools of vendors: their scripts run in a Tcl shell with stand-ins for the tools, which are not to be had here.
 
 use super::boards;
-use crate::program::{bad, program, Dir};
+use crate::program::{bad, good, program, Dir};
 use crate::tools;
 use serde_json::Value;
 use std::fs;
@@ -161,7 +161,43 @@ fn a_report_that_was_made_elsewhere_is_read_beside_its_emission() {
         code == Some(2) && told.contains("is of another configuration, board or version"),
         "{told}"
     );
-    // What is in it is not trusted.
+    // Nor the one of what was emitted here before, although its file is still there.
+    let text = good(&[
+        "presets",
+        "--show",
+        "s6_two_channel",
+        "--board",
+        "arty_a7_35",
+    ]);
+    let slower = text.replace("clock_hz = 3_125_000", "clock_hz = 2_500_000");
+    assert_ne!(slower, text);
+    let config = dir.write("slower.toml", slower.as_bytes());
+    let again = ["--config", &config, "--out", &out, "--name", "card"];
+    good(&[&["emit"], &again[..]].concat());
+    let (code, _, told) = build(&[&again[..], &["--read"]].concat(), "", None);
+    assert!(
+        code == Some(2)
+            && told.contains(
+                "card_report.json: is of another configuration, board or version; build it again"
+            ),
+        "{told}"
+    );
+    let told = bad(&[&["flash"], &again[..]].concat(), 2);
+    assert!(
+        told.contains("card_report.json: is of another configuration, board or version"),
+        "{told}"
+    );
+    good(&[&["emit"], &arguments[..]].concat());
+    assert_eq!(build(&read, "", None).0, Some(0));
+    // What is in it is not trusted, and a bitstream of nothing is none.
+    dir.write("o/card/card.bit", b"");
+    let (code, _, told) = build(&read, "", None);
+    assert!(
+        code == Some(2)
+            && told.contains("is of another bitstream than card.bit, which has 0 bytes"),
+        "{told}"
+    );
+    dir.write("o/card/card.bit", b"bits\n");
     for text in [
         "",
         "{}",
@@ -181,7 +217,7 @@ fn a_report_that_was_made_elsewhere_is_read_beside_its_emission() {
 fn what_no_vendor_has_a_script_for_is_told() {
     let told = bad(&["build", "--board", "hx8k_b_evn", "--vendor"], 2);
     assert!(
-        told.contains("--vendor: iCE40 has no script for a vendor's tool; leave it out"),
+        told.contains("board = hx8k_b_evn: iCE40 has no script for a vendor's tool; leave --vendor and --read out"),
         "{told}"
     );
 }

@@ -62,9 +62,10 @@ switch $shell {
         proc get_timing_paths args {
             if {[lindex $args 1] eq "min"} { return min }
             must {[lindex $args 0] eq "-to"} $args
-            return [lindex $args 1]
+            return [expr {[lindex $args 1] eq "pll_clk" ? "pll_clk" : ""}]
         }
         proc get_property {name object} {
+            must {$object ne ""} "Invalid option value '' specified for 'object'."
             switch "$name $object" {
                 "SLACK pll_clk" { return [expr {$::slow ? -0.125 : 0.5}] }
                 "SLACK min" { return [expr {$::hold ? -0.2 : 0.031}] }
