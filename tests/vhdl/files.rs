@@ -27,7 +27,8 @@ fn the_list_has_the_core_in_order() {
     let (name, sources) = listed(&files);
     assert_eq!(sources.first(), Some(&"s6_two_channel_logic.vhd"));
     assert_eq!(sources.last(), Some(&"s6_two_channel.vhd"));
-    let others = ["_tb.vhd", "_component.vhd", "_registers.vhd", "_top.vhd"].map(|end| format!("{name}{end}"));
+    let others = ["_tb.vhd", "_component.vhd", "_registers.vhd", "_top.vhd"]
+        .map(|end| format!("{name}{end}"));
     let all = files
         .iter()
         .map(|f| f.path.as_str())
