@@ -143,7 +143,7 @@ endmodule
 }
 
 /// Ports of an instance, connected to the bits of a vector.
-pub fn connections(names: &[String], vector: &str) -> String {
+fn connections(names: &[String], vector: &str) -> String {
     let names = names.iter().enumerate();
     names
         .map(|(k, name)| format!(", .{name}({vector}[{k}])"))
@@ -175,9 +175,9 @@ fn recording() -> &'static str {
     })
 }
 
-/// A bench that plays the stimulus to a netlist and compares all outputs before every clock edge.
-fn player() -> String {
-    let (inputs, outputs) = pins();
+/// A bench that plays a recording to a module and compares all outputs before every clock edge; `instance` is the module with its
+/// clock, `clk`, connected.
+pub fn player(instance: &str, inputs: &[String], outputs: &[String], cycles: usize) -> String {
     let (i, o) = (inputs.len(), outputs.len());
     format!(
         "`timescale 1ns / 1ps
@@ -188,7 +188,7 @@ module player;
     reg [{o_top}:0] want;
     wire [{o_top}:0] out;
     integer cycle;
-    {DEFAULT_PRESET} dut (.clk_i(clk){ins}{outs});
+    {instance}{ins}{outs});
     initial begin
         $readmemb(\"recording.txt\", recording);
         clk = 1'b0;
@@ -211,9 +211,9 @@ endmodule
         row_top = i + o - 1,
         i_top = i - 1,
         o_top = o - 1,
-        last = CYCLES - 1,
-        ins = connections(&inputs, "in"),
-        outs = connections(&outputs, "out"),
+        last = cycles - 1,
+        ins = connections(inputs, "in"),
+        outs = connections(outputs, "out"),
     )
 }
 
@@ -233,7 +233,13 @@ pub fn share() -> PathBuf {
 fn play(name: &str, recording: &str, card: &[(&str, &str)], options: &[String]) -> String {
     let folder = tools::folder(&format!("gate-{name}"));
     fs::write(folder.join("recording.txt"), recording).unwrap();
-    fs::write(folder.join("player.v"), player()).unwrap();
+    let (inputs, outputs) = pins();
+    let instance = format!("{DEFAULT_PRESET} dut (.clk_i(clk)");
+    fs::write(
+        folder.join("player.v"),
+        player(&instance, &inputs, &outputs, CYCLES),
+    )
+    .unwrap();
     let mut arguments = vec!["-g2005", "-o", "sim.vvp", "-s", "player", "player.v"];
     for (file, text) in card {
         fs::write(folder.join(file), text).unwrap();
