@@ -26,7 +26,7 @@ pub fn show(name: &str) -> Result<Outcome, GenError> {
 
 /// The wiring of the shipped card on a board, as SVG.
 pub fn wiring(name: &str) -> Result<Outcome, GenError> {
-    let board = super::board_of(name)?;
+    let board = super::board_of("--wiring", name)?;
     let project = shipped_card(&board)?;
     Ok(Outcome::good(wiring::drawing(&project, &board)))
 }
@@ -79,7 +79,7 @@ pub fn page() -> Result<Outcome, GenError> {
 /// Builds the shipped card, and prints a row for each board as Markdown; exits with 1 if one is too slow.
 pub fn measure(name: Option<&str>) -> Result<Outcome, GenError> {
     let boards = match name {
-        Some(name) => vec![super::board_of(name)?],
+        Some(name) => vec![super::board_of("--measure", name)?],
         None => all()?,
     };
     let mut text = String::from(

@@ -228,16 +228,20 @@ impl EmissionArgs {
 
 impl TargetArgs {
     fn load(&self) -> Result<Option<Board>, GenError> {
-        self.board.as_deref().map(board_of).transpose()
+        self.board
+            .as_deref()
+            .map(|word| board_of("--board", word))
+            .transpose()
     }
 }
 
 /// A board by its name, or in a file.
-fn board_of(word: &str) -> Result<Board, GenError> {
+fn board_of(option: &str, word: &str) -> Result<Board, GenError> {
     if word.contains(['/', '\\', '.']) {
         return Ok(Board::from_file(Path::new(word))?);
     }
-    Board::named(word).map_err(|text| GenError::input(format!("--board = {}: {text}", shown(word))))
+    Board::named(word)
+        .map_err(|text| GenError::input(format!("{option} = {}: {text}", shown(word))))
 }
 
 impl SourceArgs {
@@ -331,7 +335,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
             show: Some(name),
             board: Some(board),
             ..
-        }) => config::preset_for("--show", &name, &board_of(&board)?).map(Outcome::good),
+        }) => config::preset_for("--show", &name, &board_of("--board", &board)?).map(Outcome::good),
         Some(Command::Presets {
             show: Some(name), ..
         }) => config::preset_of("--show", &name).map(Outcome::good),
