@@ -202,11 +202,7 @@ fn the_wiring_page_names_the_pins_of_the_preset() {
         let name = n.map_or(pin.signal.clone(), |at| {
             format!("{}N{}", &pin.signal[..at], &pin.signal[at + 1..])
         });
-        let place = if pin.position.is_empty() {
-            pin.pin
-        } else {
-            format!("{} ({})", pin.position, pin.pin)
-        };
+        let place = pin.place();
         let row = page
             .lines()
             .find(|l| l.starts_with('|') && l.contains(&name) && l.contains(&place));

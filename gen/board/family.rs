@@ -304,21 +304,20 @@ fn read_file(
         clock_manager: clock_manager?,
         attributes,
         device,
-        fusesoc: match fusesoc {
-            Some(fusesoc) => Some(fusesoc?),
-            None => None,
-        },
-        build: match build {
-            Some(build) => Some(build?),
-            None => None,
-        },
-        vendor: match vendor {
-            Some(vendor) => Some(vendor?),
-            None => None,
-        },
+        fusesoc: left_out_or_good(fusesoc)?,
+        build: left_out_or_good(build)?,
+        vendor: left_out_or_good(vendor)?,
         timing: timing.map(|end| end.value),
         templates,
     })
+}
+
+/// A table that may be left out; none if it is there and wrong.
+fn left_out_or_good<T>(table: Option<Option<T>>) -> Option<Option<T>> {
+    match table {
+        None => Some(None),
+        Some(table) => table.map(Some),
+    }
 }
 
 /// A file from elsewhere may name the tools of this trade, and no other program.

@@ -230,6 +230,14 @@ fn a_family_of_ones_own_is_a_folder_and_what_is_wrong_with_it_is_told() {
             "{place}\n{told}"
         );
     }
+    dir.write("mine/family.toml", good_text.as_bytes());
+    // A script from elsewhere may do anything: it is not run.
+    let out = dir.path("o");
+    let told = bad(&["build", "--vendor", "--board", &board, "--out", &out], 2);
+    assert!(
+        told.contains("./mine: its script is not one of this program, so you run it: `diamondc "),
+        "{told}"
+    );
     // Two files of one name.
     let twice = good_text.replace("constraints = \"lpf\"", "constraints = \"sdc\"");
     dir.write("mine/family.toml", twice.as_bytes());

@@ -3,14 +3,13 @@
 use super::bitstream::small_card;
 use crate::program::Dir;
 use crate::tools::{self, run};
-use crate::verilog::{compile, netlist};
+use crate::verilog::netlist;
 use endat_gen::bitstream;
-use endat_gen::board::Kind;
+use endat_gen::board::{Assignment, Kind};
 use endat_gen::config::parse;
-use std::collections::BTreeSet;
 use std::fs;
 
-/// Cycles that are compared: reset, host commands, a frame that measures the delay, frames at the configured clock.
+/// Cycles that are compared, from power-up on: host commands, a frame that measures the delay, frames at the configured clock.
 const CYCLES: usize = 60_000;
 
 /// A clock manager that gives the oscillator on.
@@ -49,51 +48,28 @@ fn a_bitstream_read_back_does_what_the_card_does() {
     let dir = Dir::new("bitstream-read");
     let text = fs::read_to_string(small_card(&dir, "hx8k_b_evn")).unwrap();
     let project = parse("card.toml", &text).unwrap();
-    let (folder, name) = (&dir.0, project.name.as_str());
     let (inputs, outputs): (Vec<_>, Vec<_>) = (project.pins.iter())
         .filter(|pin| pin.kind != Kind::Oscillator)
         .partition(|pin| pin.kind.is_input());
-    let names = |pins: Vec<&endat_gen::board::Assignment>| -> Vec<String> {
+    let names = |pins: Vec<&Assignment>| -> Vec<String> {
         pins.iter().map(|pin| pin.signal.clone()).collect()
     };
     let (inputs, outputs) = (names(inputs), names(outputs));
 
     let mut files = endat_gen::emit(&project).unwrap();
-    let top = files
-        .iter_mut()
-        .find(|f| f.path.ends_with("_top.v"))
-        .unwrap();
+    let top = files.iter_mut().find(|f| f.path.ends_with("_top.v"));
+    let top = &mut top.unwrap().text;
     // Behind a reset a channel is quiet for 30 ms, which are millions of cycles: the card begins as its bench has it begin, by the
     // start values of its registers.
-    assert_eq!(top.text.matches("(reset_pipe[3])").count(), 1);
-    top.text = top.text.replace("(reset_pipe[3])", "(1'b0)");
-
-    let mut sources = vec![];
-    for file in files
-        .iter()
-        .filter(|f| f.path.ends_with(".v") && !f.path.ends_with("_top.v"))
-    {
-        fs::write(folder.join(&file.path), &file.text).unwrap();
-        sources.push(file.path.clone());
-    }
-    let recorder = netlist::recorder(name, &inputs, &outputs, CYCLES);
-    fs::write(folder.join("recorder.v"), recorder).unwrap();
-    sources.push("recorder.v".into());
-    compile(folder, "recorder", &sources, &["-s", &format!("{name}_tb")]);
-    let (is_good, told) = run("vvp", folder, &["-n", "sim.vvp"]);
-    assert!(is_good && !told.contains("FAIL"), "{told}");
-    let recording = fs::read_to_string(folder.join("recording.txt")).unwrap();
+    assert_eq!(top.matches("(reset_pipe[3])").count(), 1);
+    *top = top.replace("(reset_pipe[3])", "(1'b0)");
+    let recording = netlist::record("bitstream", &files, &inputs, &outputs, CYCLES);
     assert_eq!(recording.lines().count(), CYCLES);
-    for (place, name) in outputs.iter().rev().enumerate() {
-        let bits: BTreeSet<u8> = recording.lines().map(|l| l.as_bytes()[place]).collect();
-        assert!(
-            bits.len() == 2 || name.starts_with("led_"),
-            "{name} does not move"
-        );
-    }
+    netlist::assert_outputs_move(&recording, &outputs, |name| name.starts_with("led_"));
 
+    let folder = &dir.0;
     // Names of pins as the constraints have them, without what else stands there.
-    let place = |pin: &endat_gen::board::Assignment| format!("set_io {} {}\n", pin.signal, pin.pin);
+    let place = |pin: &Assignment| format!("set_io {} {}\n", pin.signal, pin.pin);
     let places: String = project.pins.iter().map(place).collect();
     fs::write(folder.join("pins.pcf"), places).unwrap();
     let board = project.board.as_ref().unwrap();
@@ -109,33 +85,23 @@ fn a_bitstream_read_back_does_what_the_card_does() {
     let clock = clock.iter().find(|clock| chip.contains(*clock));
     let clock = clock.unwrap_or_else(|| panic!("no clock manager: {}", &chip[..2000]));
     let chip = chip.replace(clock, "clock_stand_in #(");
-    let player = netlist::player("chip dut (.osc_i(clk)", &inputs, &outputs, CYCLES);
-    fs::write(folder.join("player.v"), format!("{CLOCK}{player}")).unwrap();
-    let cells = netlist::share().join("ice40/cells_sim.v");
+    let models = netlist::cell_models("ice40");
     let play = |chip: &str| {
-        fs::write(folder.join("chip.v"), chip).unwrap();
-        let cells = cells.to_str().unwrap();
-        let arguments = [
-            "-g2005",
-            "-DNO_ICE40_DEFAULT_ASSIGNMENTS",
-            "-o",
-            "chip.vvp",
-            "-s",
-            "player",
-            "player.v",
-            "chip.v",
-            cells,
-        ];
-        let (is_good, told) = run("iverilog", folder, &arguments);
-        assert!(is_good, "{told}");
-        run("vvp", folder, &["-n", "chip.vvp"]).1
+        let files = [("clock.v", CLOCK), ("chip.v", chip)];
+        let pins = (&inputs[..], &outputs[..]);
+        netlist::play(
+            "chip",
+            &recording,
+            "chip dut (.osc_i(clk)",
+            pins,
+            &files,
+            &models,
+        )
     };
     assert_eq!(play(&chip), "PASS\n");
     // One wire the other way round: the comparison sees it.
     let wire = "assign endat_clk0_o = ";
     assert_eq!(chip.matches(wire).count(), 1);
-    assert_ne!(
-        play(&chip.replace(wire, "assign endat_clk0_o = !")),
-        "PASS\n"
-    );
+    let spoilt = chip.replace(wire, "assign endat_clk0_o = !");
+    assert_ne!(play(&spoilt), "PASS\n");
 }

@@ -198,10 +198,14 @@ fn a_report_that_was_made_elsewhere_is_read_beside_its_emission() {
         "{told}"
     );
     dir.write("o/card/card.bit", b"bits\n");
+    let good_report = fs::read_to_string(dir.0.join("o/card/card_report.json")).unwrap();
+    let oscillator_alone = good_report.replace("pll_clk", "osc_i");
+    assert_ne!(oscillator_alone, good_report);
     for text in [
         "",
         "{}",
         "[1",
+        &oscillator_alone,
         "{\"fmax\": {\"clk\": {\"achieved\": 1, \"constraint\": 1}}}",
     ] {
         dir.write("o/card/card_report.json", text.as_bytes());

@@ -1,8 +1,9 @@
 //! The card synthesised for every family: it can be, its synchronisers stay flip-flops, and the netlists do what the RTL does.
 
-use super::{area::require, compile, is_core, quick_files, write};
+use super::{area::require, compile, is_core, name_of, quick_files, write};
 use crate::tools;
 use endat_gen::area::{self, Family, Synthesis, ECP5, GOWIN, ICE40, XC6S, XC7};
+use endat_gen::artifact::Artifact;
 use endat_gen::config::DEFAULT_PRESET;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -118,7 +119,7 @@ fn pins() -> (Vec<String>, Vec<String>) {
 }
 
 /// A module that records, beside a card's own bench, what goes into the card and what it makes of it: a line for each of so many cycles.
-pub fn recorder(card: &str, inputs: &[String], outputs: &[String], cycles: usize) -> String {
+fn recorder(card: &str, inputs: &[String], outputs: &[String], cycles: usize) -> String {
     let joined = |names: &[String]| {
         let pins = names.iter().rev();
         let pins: Vec<String> = pins.map(|name| format!("{card}_tb.dut.{name}")).collect();
@@ -150,34 +151,50 @@ fn connections(names: &[String], vector: &str) -> String {
         .collect()
 }
 
-/// Stimulus and outputs of the RTL, one line a cycle, recorded while the card runs in its own test bench.
+/// Stimulus and outputs of a card, one line a cycle, recorded while it runs in its own test bench.
+pub fn record(
+    test: &str,
+    emission: &[Artifact],
+    inputs: &[String],
+    outputs: &[String],
+    cycles: usize,
+) -> String {
+    let (folder, mut files) = write(test, emission);
+    let card = name_of(emission);
+    let text = recorder(card, inputs, outputs, cycles);
+    fs::write(folder.join("recorder.v"), text).unwrap();
+    let bench = format!("{card}_tb");
+    files.extend([format!("{bench}.v"), "recorder.v".into()]);
+    compile(&folder, "recorder", &files, &["-s", &bench]);
+    let (good, text) = tools::run("vvp", &folder, &["-n", "sim.vvp"]);
+    assert!(
+        good && !text.contains("FAIL"),
+        "{}: {text}",
+        folder.display()
+    );
+    fs::read_to_string(folder.join("recording.txt")).unwrap()
+}
+
+/// The recording of the quick card.
 fn recording() -> &'static str {
     static TEXT: OnceLock<String> = OnceLock::new();
     TEXT.get_or_init(|| {
-        let (folder, mut files) = write("recorder", quick_files());
         let (inputs, outputs) = pins();
-        let text = recorder(DEFAULT_PRESET, &inputs, &outputs, CYCLES);
-        fs::write(folder.join("recorder.v"), text).unwrap();
-        files.extend([format!("{DEFAULT_PRESET}_tb.v"), "recorder.v".into()]);
-        compile(
-            &folder,
-            "recorder",
-            &files,
-            &["-s", &format!("{DEFAULT_PRESET}_tb")],
-        );
-        let (good, text) = tools::run("vvp", &folder, &["-n", "sim.vvp"]);
-        assert!(
-            good && !text.contains("FAIL"),
-            "{}: {text}",
-            folder.display()
-        );
-        fs::read_to_string(folder.join("recording.txt")).unwrap()
+        record("recorder", quick_files(), &inputs, &outputs, CYCLES)
     })
+}
+
+/// The frames are in a recording: all outputs move but those that stand still for so long.
+pub fn assert_outputs_move(recording: &str, outputs: &[String], is_still: fn(&str) -> bool) {
+    for (place, name) in outputs.iter().rev().enumerate() {
+        let bits: BTreeSet<u8> = recording.lines().map(|l| l.as_bytes()[place]).collect();
+        assert!(bits.len() == 2 || is_still(name), "{name} does not move");
+    }
 }
 
 /// A bench that plays a recording to a module and compares all outputs before every clock edge; `instance` is the module with its
 /// clock, `clk`, connected.
-pub fn player(instance: &str, inputs: &[String], outputs: &[String], cycles: usize) -> String {
+fn player(instance: &str, inputs: &[String], outputs: &[String], cycles: usize) -> String {
     let (i, o) = (inputs.len(), outputs.len());
     format!(
         "`timescale 1ns / 1ps
@@ -219,7 +236,7 @@ endmodule
 
 /// The folder of Debian's yosys' own files: where yosys itself looks for them, beside its program. Its cell models are the
 /// ones that iverilog reads for every family.
-pub fn share() -> PathBuf {
+fn share() -> PathBuf {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let programs = std::env::split_paths(&path).map(|folder| folder.join("yosys"));
     let program = programs
@@ -229,19 +246,31 @@ pub fn share() -> PathBuf {
     program.parent().unwrap().join("../share/yosys")
 }
 
-/// Plays a recording to a card; what the player says.
-fn play(name: &str, recording: &str, card: &[(&str, &str)], options: &[String]) -> String {
-    let folder = tools::folder(&format!("gate-{name}"));
+/// What iverilog is told to read the models of a family's cells, by their folder.
+pub fn cell_models(family: &str) -> [String; 3] {
+    let folder = share().join(family);
+    [
+        "-DNO_ICE40_DEFAULT_ASSIGNMENTS".to_owned(),
+        format!("-I{}", folder.display()),
+        folder.join("cells_sim.v").display().to_string(),
+    ]
+}
+
+/// Plays a recording to a module of these files; what the player says. `instance` is that of [`player`].
+pub fn play(
+    test: &str,
+    recording: &str,
+    instance: &str,
+    (inputs, outputs): (&[String], &[String]),
+    files: &[(&str, &str)],
+    options: &[String],
+) -> String {
+    let folder = tools::folder(&format!("gate-{test}"));
     fs::write(folder.join("recording.txt"), recording).unwrap();
-    let (inputs, outputs) = pins();
-    let instance = format!("{DEFAULT_PRESET} dut (.clk_i(clk)");
-    fs::write(
-        folder.join("player.v"),
-        player(&instance, &inputs, &outputs, CYCLES),
-    )
-    .unwrap();
+    let text = player(instance, inputs, outputs, recording.lines().count());
+    fs::write(folder.join("player.v"), text).unwrap();
     let mut arguments = vec!["-g2005", "-o", "sim.vvp", "-s", "player", "player.v"];
-    for (file, text) in card {
+    for (file, text) in files {
         fs::write(folder.join(file), text).unwrap();
         arguments.push(file);
     }
@@ -249,6 +278,14 @@ fn play(name: &str, recording: &str, card: &[(&str, &str)], options: &[String]) 
     let (good, text) = tools::run("iverilog", &folder, &arguments);
     assert!(good, "{}: {text}", folder.display());
     tools::run("vvp", &folder, &["-n", "sim.vvp"]).1
+}
+
+/// Plays a recording of the quick card.
+fn play_card(test: &str, recording: &str, card: &[(&str, &str)], options: &[String]) -> String {
+    let (inputs, outputs) = pins();
+    let instance = format!("{DEFAULT_PRESET} dut (.clk_i(clk)");
+    let pins = (&inputs[..], &outputs[..]);
+    play(test, recording, &instance, pins, card, options)
 }
 
 /// The recording played back to the RTL: equal as it stands, and one wrong bit in the last cycle is noticed.
@@ -259,24 +296,19 @@ fn player_compares_every_cycle() {
     }
     let core = quick_files().iter().filter(|f| is_core(f));
     let card: Vec<_> = core.map(|f| (f.path.as_str(), f.text.as_str())).collect();
-    assert_eq!(play("rtl", recording(), &card, &[]), "PASS\n");
+    assert_eq!(recording().lines().count(), CYCLES);
+    assert_eq!(play_card("rtl", recording(), &card, &[]), "PASS\n");
     let (first, last) = recording().trim_end().rsplit_once('\n').unwrap();
     let flipped = if last.starts_with('0') { "1" } else { "0" };
     let spoilt = format!("{first}\n{flipped}{}\n", &last[1..]);
-    let said = play("spoilt", &spoilt, &card, &[]);
+    let said = play_card("spoilt", &spoilt, &card, &[]);
     assert!(
         said.starts_with(&format!("cycle {}:", CYCLES - 1)),
         "{said}"
     );
-    // The frames are in it: clocks, drivers and lights of both channels move.
+    // Clocks, drivers and lights of both channels move.
     let (_, outputs) = pins();
-    for (place, name) in outputs.iter().rev().enumerate() {
-        let bits: BTreeSet<u8> = recording().lines().map(|l| l.as_bytes()[place]).collect();
-        assert!(
-            bits.len() == 2 || name == "led_status_o",
-            "{name} does not move"
-        );
-    }
+    assert_outputs_move(recording(), &outputs, |name| name == "led_status_o");
 }
 
 fn gate_level(family: &Family) {
@@ -289,18 +321,14 @@ fn gate_level(family: &Family) {
         _ => synthesised(family),
     };
     has_flip_flops(&synthesis);
-    let folder = share().join(match family.name {
+    let options = cell_models(match family.name {
         "xc6s" => "xilinx",
         name => name,
     });
-    let options = [
-        "-DNO_ICE40_DEFAULT_ASSIGNMENTS".to_owned(),
-        format!("-I{}", folder.display()),
-        folder.join("cells_sim.v").display().to_string(),
-    ];
     let netlist = fs::read_to_string(&synthesis.verilog).unwrap();
     let card = [("netlist.v", netlist.as_str())];
-    assert_eq!(play(family.name, recording(), &card, &options), "PASS\n");
+    let said = play_card(family.name, recording(), &card, &options);
+    assert_eq!(said, "PASS\n");
 }
 
 #[test]
