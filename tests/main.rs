@@ -25,6 +25,7 @@ mod new;
 mod own_triggers;
 mod packages;
 mod pages;
+mod passed;
 mod position;
 mod presets;
 mod program;

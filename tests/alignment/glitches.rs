@@ -1,6 +1,7 @@
 //! Pulses on DATA that are shorter than the filter: nowhere in a frame do they change anything.
 
 use super::{count, run, Count, Kind};
+use crate::passed::once_for_this_core;
 use crate::tools::third;
 use endat_sim::{
     campaign::{Case, Traces},
@@ -50,6 +51,7 @@ fn with_glitches(kind: Kind, width: f64) -> Vec<Case> {
 
 #[test]
 fn pulses_below_the_filter_have_no_effect_at_any_phase() {
+    once_for_this_core!();
     for kind in [Kind::single(16), Kind::double(16)] {
         for &width in third(&[0.4, 1.0, 1.9, 2.9], FILTER.len()) {
             let cases = with_glitches(kind, width);
@@ -68,6 +70,7 @@ fn pulses_below_the_filter_have_no_effect_at_any_phase() {
 /// Catches a filter that counts whole cycles only: 3.4 cycles are 6 or 7 looks.
 #[test]
 fn half_a_cycle_of_the_filter_counts() {
+    once_for_this_core!();
     let mut cases = with_glitches(Kind::double(16), 3.4);
     let is_harmed = |c: &Count| (c.good, c.wrong) != (c.frames, 0);
     let harmed = run(&cases, 0).iter().filter(|c| is_harmed(c)).count();
@@ -82,6 +85,7 @@ fn half_a_cycle_of_the_filter_counts() {
 /// Longer ones do harm, so the sweep above means something; they are told, but for what CRC5 cannot see.
 #[test]
 fn pulses_above_the_filter_are_told() {
+    once_for_this_core!();
     for kind in [Kind::single(16), Kind::double(16)] {
         for &width in third(&[5.0, 12.0, 24.0], FILTER.len()) {
             let cases = with_glitches(kind, width);

@@ -1,6 +1,7 @@
 //! The recovery time that is told, with few cycles and places in a bit.
 
 use super::Kind;
+use crate::passed::once_for_this_core;
 use endat_sim::campaign::{self, Case, RunOptions, Traces};
 use endat_sim::{NS, US};
 
@@ -11,6 +12,7 @@ const CYCLES_OFF: u64 = 4;
 /// way of a sample through the receiver.
 #[test]
 fn the_recovery_time_is_that_of_the_encoder() {
+    once_for_this_core!();
     let tm = 15 * US;
     let mut cases = vec![];
     for kind in [

@@ -1,6 +1,7 @@
 //! Both edges of the clock on rust-hdl's kernels, on every engine, and in the emitted Verilog.
 
 use super::Kind;
+use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use crate::tools::third;
 use endat_hdl::endat::channel::{Channel, FixedTimes};
@@ -11,6 +12,7 @@ use rust_hdl::prelude::Block;
 
 #[test]
 fn double_edge_agrees_on_a_line_with_jitter() {
+    once_for_this_core!();
     let all = [
         ("double_edge_2", Kind::double(2), false),
         ("double_edge_5", Kind::double(5), true),

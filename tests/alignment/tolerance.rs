@@ -1,6 +1,7 @@
 //! How much jitter the phase stands: against the ideal `0.5 - 1 / places`.
 
 use super::{run, Count, Kind};
+use crate::passed::once_for_this_core;
 use crate::tools::{is_whole, third};
 use endat_hdl::endat::line_delay::mode;
 use endat_sim::campaign::Case;
@@ -19,6 +20,7 @@ fn sum(counts: &[Count]) -> Count {
 /// Oversampling x jitter x delay: 4025 cells of 12 frames, or a third of the delays.
 #[test]
 fn the_area_of_tolerance_is_that_of_an_ideal_receiver() {
+    once_for_this_core!();
     let jitters = [0.0, 0.1, 0.2, 0.3, 0.4];
     let kinds = [4, 6, 8, 16, 32].map(Kind::single);
     let eighths: Vec<u32> = (0..=160).collect();
@@ -76,6 +78,7 @@ fn reached(kind: Kind, phase_mode: u64, percent: &[u32]) -> f64 {
 
 #[test]
 fn tracked_phase_stands_the_jitter_that_an_ideal_receiver_stands() {
+    once_for_this_core!();
     let kinds = [4, 6, 8, 16, 32].map(Kind::single).into_iter();
     let kinds: Vec<Kind> = kinds.chain([2, 4, 8].map(Kind::double)).collect();
     let percent = [80, 90, 95, 98, 100, 102, 104, 106, 108, 110];
@@ -99,6 +102,7 @@ fn tracked_phase_stands_the_jitter_that_an_ideal_receiver_stands() {
 /// With the phase of one jittered edge half of it is left; the model of jitter and the judge can tell the difference.
 #[test]
 fn phase_from_the_start_bit_stands_half_of_that() {
+    once_for_this_core!();
     for &kind in third(&[Kind::single(8), Kind::single(16)], PHASE.len()) {
         let part = reached(kind, mode::FRAME, &[40, 45, 50, 60, 70, 80]);
         assert!((0.45..=0.7).contains(&part), "{kind:?}: {part}");
@@ -107,6 +111,7 @@ fn phase_from_the_start_bit_stands_half_of_that() {
 
 #[test]
 fn a_bit_of_four_places_is_enough_for_a_hundred_thousand_frames() {
+    once_for_this_core!();
     for &kind in third(&[Kind::single(4), Kind::double(2)], PHASE.len()) {
         let case = |seed| kind.case(0.15, 3.0 + seed as f64 / 128.0, 800, seed);
         let cases: Vec<Case> = (0..128).map(case).collect();
@@ -119,6 +124,7 @@ fn a_bit_of_four_places_is_enough_for_a_hundred_thousand_frames() {
 /// Every width, and delays from nothing to 8 us: exactly the pulses that the encoder needs, while tcal moves the start bit about.
 #[test]
 fn pulses_are_exact_at_every_width_and_delay() {
+    once_for_this_core!();
     use endat_sim::US;
     let mut cases = vec![];
     let kinds = [Kind::single(4), Kind::single(8), Kind::double(2)];

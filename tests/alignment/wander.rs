@@ -1,6 +1,7 @@
 //! Delays that change: slowly, and by a step.
 
 use super::{count, Kind};
+use crate::passed::once_for_this_core;
 use crate::tools::third;
 use endat_hdl::endat::{line_delay::mode, transaction::cause};
 use endat_sim::{campaign::Traces, line::Jitter, MS, US};
@@ -31,6 +32,7 @@ fn wanders(kind: Kind, jitter_bits: f64) {
 
 #[test]
 fn slow_drift_costs_no_frame() {
+    once_for_this_core!();
     let all = [
         (Kind::single(4), 0.0),
         (Kind::single(8), 0.2),
@@ -43,6 +45,7 @@ fn slow_drift_costs_no_frame() {
 
 #[test]
 fn a_step_costs_one_frame_at_most_and_never_a_wrong_position() {
+    once_for_this_core!();
     let kinds = [
         Kind::single(4),
         Kind::single(8),
@@ -74,6 +77,7 @@ fn a_step_costs_one_frame_at_most_and_never_a_wrong_position() {
 /// The start bit's edge is looked for in its window in every mode, whether the cells follow it or not.
 #[test]
 fn a_start_bit_outside_its_window_is_refused_in_every_mode() {
+    once_for_this_core!();
     const WINDOW_CYCLES: i64 = 6;
     for cycles in [31, 32] {
         for phase_mode in [mode::TRACKED, mode::FRAME] {

@@ -7,6 +7,7 @@ use std::path::Path;
 
 const PAPILIO: &str = include_str!("../../constraints/boards/papilio_pro.toml");
 const ULX3S: &str = include_str!("../../constraints/boards/ulx3s.toml");
+const DE10_NANO: &str = include_str!("../../constraints/boards/de10_nano.toml");
 
 /// The text with one place changed, and the line of the change.
 fn changed(text: &str, from: &str, to: &str) -> (String, usize) {
@@ -183,9 +184,10 @@ fn a_card_on_another_board_is_checked_against_that_board() {
     );
 }
 
-/// A family of one's own beside a board of one's own.
-fn own_family(dir: &Dir) -> String {
-    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("constraints/families/ecp5");
+/// A family of one's own beside a board of one's own: copies of these.
+fn own_family(dir: &Dir, family: &str, board: &str) -> String {
+    let families = Path::new(env!("CARGO_MANIFEST_DIR")).join("constraints/families");
+    let from = families.join(family);
     fs::create_dir_all(dir.0.join("mine")).unwrap();
     for entry in fs::read_dir(from).unwrap() {
         let path = entry.unwrap().path();
@@ -193,16 +195,33 @@ fn own_family(dir: &Dir) -> String {
     }
     dir.write(
         "board.toml",
-        ULX3S
-            .replace("family = \"ecp5\"", "family = \"./mine\"")
+        board
+            .replace(&format!("family = \"{family}\""), "family = \"./mine\"")
             .as_bytes(),
     )
+}
+
+/// Catches an assignment that Quartus never sees.
+#[test]
+fn an_assignment_without_a_value_is_not_left_out_in_silence() {
+    let dir = Dir::new("family-assignments");
+    let board = own_family(&dir, "cyclone5", DE10_NANO);
+    let emit = ["emit", "--board", &board, "--out", &dir.path("o")];
+    good(&emit);
+    let text = fs::read_to_string(dir.0.join("mine/family.toml")).unwrap();
+    let (text, _) = changed(&text, "FAST_OUTPUT_REGISTER ON", "FAST_OUTPUT_REGISTER");
+    dir.write("mine/family.toml", text.as_bytes());
+    let told = bad(&emit, 2);
+    assert!(
+        told.contains("./mine/constraints.jinja: undefined value"),
+        "{told}"
+    );
 }
 
 #[test]
 fn a_family_of_ones_own_is_a_folder_and_what_is_wrong_with_it_is_told() {
     let dir = Dir::new("family");
-    let board = own_family(&dir);
+    let board = own_family(&dir, "ecp5", ULX3S);
     let explain = ["explain", "--board", &board];
     assert!(good(&explain).contains("25000000 Hz * 4"));
     let rows = [

@@ -1,12 +1,14 @@
 //! A bitstream read back: what its bits say, simulated against the card that it was made of.
 
 use super::bitstream::small_card;
+use crate::passed::Check;
 use crate::program::Dir;
 use crate::tools::{self, run};
 use crate::verilog::netlist;
+use endat_gen::artifact::Artifact;
 use endat_gen::bitstream;
 use endat_gen::board::{Assignment, Kind};
-use endat_gen::config::parse;
+use endat_gen::config::{parse, Project};
 use std::fs;
 
 /// Cycles that are compared, from power-up on: host commands, a frame that measures the delay, frames at the configured clock.
@@ -48,6 +50,18 @@ fn a_bitstream_read_back_does_what_the_card_does() {
     let dir = Dir::new("bitstream-read");
     let text = fs::read_to_string(small_card(&dir, "hx8k_b_evn")).unwrap();
     let project = parse("card.toml", &text).unwrap();
+    let files = endat_gen::emit(&project).unwrap();
+    let check = Check::new("bitstream read back").files(&files);
+    let paths = [
+        "gen/bitstream.rs",
+        "tests/boards/readback.rs",
+        "tests/verilog/netlist.rs",
+    ];
+    let check = paths.iter().fold(check, |check, path| check.source(path));
+    check.unless_passed(|| read_back_is_the_card(&dir, &project, files));
+}
+
+fn read_back_is_the_card(dir: &Dir, project: &Project, mut files: Vec<Artifact>) {
     let (inputs, outputs): (Vec<_>, Vec<_>) = (project.pins.iter())
         .filter(|pin| pin.kind != Kind::Oscillator)
         .partition(|pin| pin.kind.is_input());
@@ -56,7 +70,6 @@ fn a_bitstream_read_back_does_what_the_card_does() {
     };
     let (inputs, outputs) = (names(inputs), names(outputs));
 
-    let mut files = endat_gen::emit(&project).unwrap();
     let top = files.iter_mut().find(|f| f.path.ends_with("_top.v"));
     let top = &mut top.unwrap().text;
     // Behind a reset a channel is quiet for 30 ms, which are millions of cycles: the card begins as its bench has it begin, by the
@@ -74,7 +87,7 @@ fn a_bitstream_read_back_does_what_the_card_does() {
     fs::write(folder.join("pins.pcf"), places).unwrap();
     let board = project.board.as_ref().unwrap();
     let build = board.family.build.as_ref().unwrap();
-    let (_, bytes) = bitstream::build(&project, board, build, &files, 1, &mut drop).unwrap();
+    let (_, bytes) = bitstream::build(project, board, build, &files, 1, &mut drop).unwrap();
     fs::write(folder.join("chip.bin"), bytes).unwrap();
     let (is_good, told) = run("iceunpack", folder, &["chip.bin", "chip.asc"]);
     assert!(is_good, "{told}");

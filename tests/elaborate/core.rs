@@ -1,5 +1,6 @@
 //! The real core, three ways, under stimulus that wanders through as many states as it can without an encoder.
 
+use crate::passed::once_for_this_core;
 use crate::stimulus::random_stimulus;
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::load_preset;
@@ -136,6 +137,7 @@ fn channel_agrees(name: &str, features: Features) {
 
 #[test]
 fn the_card_agrees() {
+    once_for_this_core!();
     let project = load_preset("s6_two_channel").unwrap();
     let mut block = Card::new(&project.card);
     block.connect_all();

@@ -3,6 +3,7 @@
 mod frames;
 mod mutations;
 
+use crate::passed::Check;
 use crate::program::{bad, good, run, Dir};
 use crate::tools;
 use crate::verilog::mutations::Mutation;
@@ -30,6 +31,13 @@ const REQUESTS: &str = "[service]\nparts = [\"requests\"]\n";
 
 fn subject(text: &str) -> Subject {
     Subject::new(&parse("bare.toml", text).unwrap()).unwrap()
+}
+
+/// A check that the cards decide, and who proves them.
+fn seen<'a>(what: &str, subjects: impl IntoIterator<Item = &'a Subject>) -> Check {
+    let own = Check::new(what).source("gen/prove").source("tests/prove");
+    let subjects = subjects.into_iter();
+    subjects.fold(own, |check, subject| check.files(&subject.files))
 }
 
 fn proved(subject: &Subject) -> Report {
@@ -85,15 +93,20 @@ fn every_property_holds_in_every_preset() {
             Configuration::Receiver(receiver) => Subject::receiver(&receiver).unwrap(),
         });
     }
-    for subject in &subjects {
-        let report = proved(subject);
-        assert!(report.is_good(), "{report}");
-        let rows = report.parts.iter().flat_map(|p| &p.rows);
-        let rows: BTreeSet<&str> = rows.map(|r| r.name.as_str()).collect();
-        let properties = all(&subject.design);
-        let there = properties.iter().map(|(_, p)| p.name.as_str());
-        assert_eq!(rows, there.collect(), "{}: all are proved", subject.name);
+    for (index, subject) in subjects.iter().enumerate() {
+        let check = seen(&format!("proofs of {} ({index})", subject.name), [subject]);
+        check.unless_passed(|| all_are_proved(subject));
     }
+}
+
+fn all_are_proved(subject: &Subject) {
+    let report = proved(subject);
+    assert!(report.is_good(), "{report}");
+    let rows = report.parts.iter().flat_map(|p| &p.rows);
+    let rows: BTreeSet<&str> = rows.map(|r| r.name.as_str()).collect();
+    let properties = all(&subject.design);
+    let there = properties.iter().map(|(_, p)| p.name.as_str());
+    assert_eq!(rows, there.collect(), "{}: all are proved", subject.name);
 }
 
 /// Broken cards are refused by the property that speaks of what is broken, and each property refuses one: the first that is broken for it, and
@@ -103,26 +116,18 @@ fn a_broken_block_breaks_its_property() {
     if !tools::require_all(&TOOLS, "mutants that a proof must refuse") {
         return;
     }
-    let mut seen = BTreeSet::new();
-    let mut is_meant = |property| seen.insert(property) || tools::is_whole();
+    let mut broken = BTreeSet::new();
+    let mut is_meant = |property| broken.insert(property) || tools::is_whole();
     let mutations = MUTATIONS.iter().filter(|(_, property)| is_meant(*property));
     let mutations: Vec<_> = mutations.collect();
     // What a change of it tries others by.
     let turn = include_str!("mutations.rs").len();
-    let mutations: Vec<_> = tools::third(&mutations, turn).collect();
+    let mutations: Vec<_> = tools::third(&mutations, turn).copied().collect();
     let names: BTreeSet<&str> = MUTATIONS.iter().map(|(m, _)| m.name).collect();
     assert_eq!(names.len(), MUTATIONS.len(), "two with one name");
     // The small card first; what it does not have, or does not use, breaks another one.
     let served = format!("{BARE}{REQUESTS}");
     let cards = [BARE, FULL, &served].map(subject);
-    let file_of = |card: &Subject, block: &str| {
-        let path = format!("{}_{block}.v", card.name);
-        card.files.iter().position(|f| f.path == path)
-    };
-    let applied = |card: &Subject, mutation: &Mutation| {
-        let text = file_of(card, mutation.block).map_or("", |file| &card.files[file].text);
-        mutation.applied(text)
-    };
     let absent = MUTATIONS.iter().filter(|(mutation, _)| {
         let mut cards = cards.iter();
         cards.all(|card| applied(card, mutation).is_err())
@@ -130,6 +135,26 @@ fn a_broken_block_breaks_its_property() {
     let absent = absent.map(|(mutation, _)| applied(&cards[1], mutation));
     let absent: Vec<_> = absent.collect();
     assert!(absent.is_empty(), "{absent:#?}");
+    let refused: BTreeSet<&str> = MUTATIONS.iter().map(|(_, property)| *property).collect();
+    for (block, property) in all(&subject(FULL).design) {
+        let name = property.name.as_str();
+        assert!(refused.contains(name), "{block}: nothing breaks {name}");
+    }
+    seen("proofs of broken cards", &cards).unless_passed(|| refuse(&cards, &mutations));
+}
+
+fn file_of(card: &Subject, block: &str) -> Option<usize> {
+    let path = format!("{}_{block}.v", card.name);
+    card.files.iter().position(|f| f.path == path)
+}
+
+fn applied(card: &Subject, mutation: &Mutation) -> Result<String, String> {
+    let text = file_of(card, mutation.block).map_or("", |file| &card.files[file].text);
+    mutation.applied(text)
+}
+
+/// The first card that has what a mutation breaks, and is no good with it, refuses it by its property.
+fn refuse(cards: &[Subject], mutations: &[&(Mutation, &str)]) {
     let next = Mutex::new(0);
     let wrong = Mutex::new(vec![]);
     std::thread::scope(|scope| {
@@ -144,7 +169,7 @@ fn a_broken_block_breaks_its_property() {
                     break;
                 };
                 let mut failed = vec![];
-                for card in &cards {
+                for card in cards {
                     let Ok(text) = applied(card, mutation) else {
                         continue;
                     };
@@ -171,11 +196,6 @@ fn a_broken_block_breaks_its_property() {
     });
     let wrong = wrong.into_inner().unwrap();
     assert!(wrong.is_empty(), "{wrong:#?}");
-    let refused: BTreeSet<&str> = MUTATIONS.iter().map(|(_, property)| *property).collect();
-    for (block, property) in all(&subject(FULL).design) {
-        let name = property.name.as_str();
-        assert!(refused.contains(name), "{block}: nothing breaks {name}");
-    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Continuous clock: one position after the other without a command, and the ways out.
 
 use super::rig::Rig;
+use crate::passed::once_for_this_core;
 use endat_hdl::endat::{channel::TIMESTAMP_TO_FIRST_FALL_CYCLES, transaction::cause};
 use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{
@@ -127,6 +128,7 @@ fn triggers_neither_disturb_a_run_nor_count_as_lost() {
 /// The encoder is left at whatever moment; the next frame is good.
 #[test]
 fn a_run_is_left_at_every_moment() {
+    once_for_this_core!("tests/position");
     for edge in EDGES {
         for wait in (0..40_000).step_by(250) {
             let mut rig = rig(2_000_000, encoder(13, edge), LineConfig::cable(50.0));

@@ -1,6 +1,7 @@
 //! What is wrong with a line or an encoder, told apart, within its limit and at every phase of a frame.
 
 use super::rig::Rig;
+use crate::passed::once_for_this_core;
 use crate::tools::third;
 use endat_hdl::endat::{
     timing::{recovery_min_cycles, PROBE_US, RECOVERY_MIN_NS, SETTLE_US},
@@ -100,6 +101,7 @@ fn phases() -> Vec<Time> {
 
 #[test]
 fn a_line_stuck_at_any_phase_has_its_cause_and_comes_back() {
+    once_for_this_core!("tests/position");
     for level in [false, true] {
         for from in phases() {
             let until = FRAME + WRONG;
@@ -138,6 +140,7 @@ fn a_line_stuck_at_any_phase_has_its_cause_and_comes_back() {
 
 #[test]
 fn an_encoder_unplugged_at_any_phase_is_no_encoder_and_comes_back() {
+    once_for_this_core!("tests/position");
     for from in phases() {
         let until = FRAME + WRONG;
         let mut encoder = encoder();
@@ -173,6 +176,7 @@ fn an_encoder_unplugged_at_any_phase_is_no_encoder_and_comes_back() {
 
 #[test]
 fn the_watchdog_ends_a_frame_wherever_it_is() {
+    once_for_this_core!("tests/position");
     for limit in 1..80 {
         let mut rig = rig(encoder(), LineConfig::cable(10.0));
         rig.bench.run_until(FRAME);

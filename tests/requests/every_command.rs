@@ -1,6 +1,7 @@
 //! Every command with every combination of additional data, at every width, rate and cable.
 
 use super::rig::Rig;
+use crate::passed::once_for_this_core;
 use crate::tools::third;
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand::{self, *};
@@ -70,6 +71,7 @@ fn all(system_hz: u64, endat_hz: u64) {
 
 #[test]
 fn at_200_khz() {
+    once_for_this_core!("tests/position");
     all(8_000_000, 200_000);
 }
 
@@ -85,6 +87,7 @@ fn at_8_mhz() {
 
 #[test]
 fn at_16_mhz() {
+    once_for_this_core!("tests/position");
     all(128_000_000, 16_000_000);
 }
 

@@ -1,6 +1,7 @@
 //! Every kind of fault at every place of a frame with additional data 1 and 2 and a supplement.
 
 use super::lanes::*;
+use crate::passed::once_for_this_core;
 use crate::position::rig::believes;
 use endat_hdl::endat::{
     timing::{PROBE_US, SETTLE_US},
@@ -146,6 +147,7 @@ fn an_encoder_lost_at_any_half_clock_period() {
 
 #[test]
 fn a_glitch_on_either_wire_at_any_half_clock_period() {
+    once_for_this_core!("tests/position");
     let mut faults = vec![];
     for (wire, widths) in [
         (Wire::Data, [125 * NS, 500 * NS, 5 * US, 30 * US]),

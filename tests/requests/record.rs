@@ -1,6 +1,7 @@
 //! The record of additional data finds the truth again after any frame, whatever recovery time, calculation time and clock.
 
 use super::lanes::*;
+use crate::passed::once_for_this_core;
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand::{PositionSelectMemory, SendPositionAddInfo};
 use endat_sim::{
@@ -135,6 +136,7 @@ fn additional_data_that_are_gone_are_forgotten_at_any_recovery_time() {
 /// They are there all the time, and what a disturbed frame seems to say about them does not last.
 #[test]
 fn additional_data_that_are_there_are_found_at_any_recovery_time() {
+    once_for_this_core!("tests/position");
     for codes in [[0x4C, 0x5F], [0x5B, 0x4F], [0x4C, 0x5B]] {
         run(codes, &stuck_low(&[2, 18, 21, 22, 40, 51]));
     }

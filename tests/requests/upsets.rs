@@ -1,6 +1,7 @@
 //! Every state that a channel with requests can be brought into, reached or not: a new trigger works, nothing hangs.
 
 use super::lanes::*;
+use crate::passed::once_for_this_core;
 use endat_sim::{rng::Rng, US};
 use rtl_design::engine::{Compiled, Keep};
 
@@ -80,6 +81,7 @@ fn upset(upsets: &[Upset]) -> (Rig, Vec<String>) {
 
 #[test]
 fn whatever_state_a_channel_with_requests_is_brought_into_the_next_triggers_work() {
+    once_for_this_core!("tests/position");
     let upsets = upsets();
     assert!(upsets.len() > 15_000);
     let (mut hung, mut lost, mut worst) = (vec![], vec![], 0);

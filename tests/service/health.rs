@@ -1,6 +1,7 @@
 //! Slots, position 2, counters, threshold, forced errors.
 
 use super::rig::{quick, Make, Rig, ENDAT_HZ};
+use crate::passed::once_for_this_core;
 use endat_hdl::endat::{
     service::map::{control, info_status, state, word, COUNTER_BAD_INFOS, COUNTER_POSITION_2},
     transaction::cause,
@@ -59,6 +60,7 @@ fn every_code_of_the_list_has_its_slot_and_age() {
 
 #[test]
 fn the_configured_additional_data_are_selected_from_the_start_on_and_after_a_plug() {
+    once_for_this_core!("tests/requests");
     let mut encoder = encoder();
     encoder.unplugged.push(1_000 * MS..1_010 * MS);
     let make = Make {

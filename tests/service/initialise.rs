@@ -1,6 +1,7 @@
 //! Initialisation: every device from nothing, what fails, and what happens after a plug.
 
 use super::rig::{quick, Make, Rig, ENDAT_HZ};
+use crate::passed::once_for_this_core;
 use endat_hdl::endat::service::{
     map::{plate, state, word, NAME_PLATE, PLATE_DELAY},
     program::{step_name, steps},
@@ -28,6 +29,7 @@ fn assert_only_the_pulse(rig: &Rig) {
 
 #[test]
 fn every_device_is_found_from_nothing() {
+    once_for_this_core!("tests/requests");
     for device in DEVICES {
         let encoder = quick(device.encoder());
         let width = encoder.position_bits;
@@ -61,6 +63,7 @@ fn every_device_is_found_from_nothing() {
 
 #[test]
 fn a_failed_step_is_told_and_positions_go_on_as_configured() {
+    once_for_this_core!("tests/requests");
     // Frame 0 is the pulse; three tries of step 3, whose frames come after reset and selection, in both rounds.
     let silent = EncoderConfig::endat22(25).defects(3..=5, Defect::NoStartBit);
     let silent = silent.defects(8..=10, Defect::NoStartBit);
@@ -95,6 +98,7 @@ fn the_slower_of_both_clocks_is_chosen() {
 
 #[test]
 fn recovery_is_set_as_wanted() {
+    once_for_this_core!("tests/requests");
     for (short, want) in [(true, SHORT_RECOVERY), (false, LONG_RECOVERY)] {
         let encoder = quick(EncoderConfig::endat22(25));
         let make = Make {
@@ -115,6 +119,7 @@ fn recovery_is_set_as_wanted() {
 /// Word 3 of the operating status has other functions beside the recovery time: they stay, and the name plate has the word as it is now.
 #[test]
 fn setting_the_recovery_time_keeps_the_other_functions() {
+    once_for_this_core!("tests/requests");
     for (short, set) in [(true, SHORT_RECOVERY), (false, LONG_RECOVERY)] {
         for found in [LONG_RECOVERY, SHORT_RECOVERY, 0, 3] {
             let others = 0xA554;
@@ -137,6 +142,7 @@ fn setting_the_recovery_time_keeps_the_other_functions() {
 
 #[test]
 fn an_encoder_that_is_plugged_in_later_is_found() {
+    once_for_this_core!("tests/requests");
     let mut encoder = quick(EncoderConfig::endat22(25));
     encoder.unplugged.push(0..200 * MS);
     let mut rig = Rig::new(true, encoder, 25);

@@ -1,6 +1,7 @@
 //! What the host sets in a frame's limits and in the continuous clock.
 
 use super::rig::{quick, Make, Rig, SYSTEM_HZ};
+use crate::passed::once_for_this_core;
 use endat_hdl::endat::{
     service::map::{word, COUNTER_POSITION_2},
     timing::{recovery_min_cycles, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS},
@@ -26,6 +27,7 @@ fn count(rig: &mut Rig, cause: u64) -> u32 {
 
 #[test]
 fn the_shortest_recovery_time_is_that_of_the_range_in_use() {
+    once_for_this_core!("tests/requests");
     for wants_short in [false, true] {
         let make = Make {
             wants_short,

@@ -1,6 +1,7 @@
 //! Seconds of a busy host: the words that it reads and writes cost no sample.
 
 use super::rig::{quick, Make, Rig};
+use crate::passed::once_for_this_core;
 use crate::tools::is_whole;
 use endat_hdl::endat::{
     service::map::{request_state, word},
@@ -133,6 +134,7 @@ fn part(seed: u64) {
 
 #[test]
 fn seconds_of_requests_cost_not_one_sample() {
+    once_for_this_core!("tests/requests");
     thread::scope(|scope| {
         for seed in 1..=PARTS {
             scope.spawn(move || part(seed));

@@ -1,6 +1,7 @@
 //! The plug pulled at every half clock period of a frame with additional data 1 and 2 and a supplement, and put back at any moment.
 
 use super::rig::{quick, times};
+use crate::passed::once_for_this_core;
 use crate::requests::lanes::{
     self, Rig, FRAME_TIME, HALF_PERIOD, LANES, POSITION_BITS, RECOVERY, SYSTEM_HZ,
 };
@@ -301,6 +302,7 @@ fn short() -> Vec<(Time, Time)> {
 
 #[test]
 fn without_initialisation_an_encoder_that_was_away_is_found_again() {
+    once_for_this_core!("tests/requests");
     let mut absences = short();
     let spread = |(i, from): (usize, Time)| (from, 4 * MS + i as Time * 17 * HALF_PERIOD % PERIOD);
     absences.extend(places().enumerate().map(spread));
@@ -309,6 +311,7 @@ fn without_initialisation_an_encoder_that_was_away_is_found_again() {
 
 #[test]
 fn an_encoder_that_was_away_for_long_is_initialised_afresh_whenever_it_comes_back() {
+    once_for_this_core!("tests/requests");
     let spread = |(i, from): (usize, Time)| (from, 4 * MS + i as Time * 17 * HALF_PERIOD % PERIOD);
     let absences: Vec<_> = places().enumerate().map(spread).collect();
     pull(&ready(true), &absences, true);
@@ -317,6 +320,7 @@ fn an_encoder_that_was_away_for_long_is_initialised_afresh_whenever_it_comes_bac
 /// Contacts that open again during the power-up sequence or in any step of the initialisation, for a moment or for long.
 #[test]
 fn an_encoder_whose_plug_bounces_is_initialised_when_it_stays() {
+    once_for_this_core!("tests/requests");
     const AWAY: [Time; 4] = [30 * US, 300 * US, 2_500 * US, 12 * MS];
     let bounces = |i: usize| {
         let from = (i as Time + 1) * 400 * US;
@@ -332,5 +336,6 @@ fn an_encoder_whose_plug_bounces_is_initialised_when_it_stays() {
 
 #[test]
 fn an_encoder_that_was_away_for_a_moment_is_found_again() {
+    once_for_this_core!("tests/requests");
     pull(&ready(true), &short(), false);
 }

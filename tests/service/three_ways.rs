@@ -1,6 +1,7 @@
 //! A port with its service at work with an encoder: what the bench drove is played to every execution of the design.
 
 use super::rig::{quick, times, ENDAT_HZ, SYSTEM_HZ};
+use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::endat::{
     channel::FixedTimes,
@@ -88,6 +89,7 @@ fn recorded() -> Stimulus {
 
 #[test]
 fn kernels_engines_and_verilog_agree_on_requests() {
+    once_for_this_core!("tests/requests");
     let design = elaborate(&block(), "encoder_port").unwrap();
     let mut kernel = kernel_engine!(block(); clock;
         in reset, tick_us, timestamp, trigger, calibrate, request_id, field_gap_us;

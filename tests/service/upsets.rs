@@ -1,6 +1,7 @@
 //! Upsets of the registers by which service and channel, and host and service, tell each other what there is to do.
 
 use super::plug::{encoder, ready, Hosts, PERIOD, STUCK_MS};
+use crate::passed::once_for_this_core;
 use crate::requests::lanes::{self, Rig, LANES};
 use endat_hdl::endat::service::map::{control, request_state, word};
 use endat_hdl::protocol::ModeCommand::*;
@@ -28,6 +29,7 @@ const SPAN: Time = 240 * US;
 
 #[test]
 fn an_upset_of_a_handshake_loses_a_request_at_most_and_the_next_one_is_fulfilled() {
+    once_for_this_core!("tests/requests");
     let ready = ready(false);
     let names: Vec<String> = ready.nets().map(Into::into).collect();
     let mut rng = Rng::new(7);
@@ -92,6 +94,7 @@ fn an_upset_of_a_handshake_loses_a_request_at_most_and_the_next_one_is_fulfilled
 /// Where the program is, or where it returns to, at moments of its main loop's round: some of these jumps end in a loop.
 #[test]
 fn a_program_that_goes_astray_begins_anew() {
+    once_for_this_core!("tests/requests");
     let ready = ready(false);
     let names: Vec<String> = ready.nets().map(Into::into).collect();
     let mut upsets = vec![];

@@ -1,5 +1,6 @@
 //! The emitted test bench as each language of Verilog, behind each bus, at each usual clock: a case is a clock, a bus and a reader.
 
+use crate::passed::Check;
 use crate::tools;
 use crate::verilog::testbench::at_50_mhz;
 use crate::verilog::write;
@@ -83,11 +84,15 @@ pub fn on_both_cores<T: Sync>(
 fn complaints(test: &str, cases: &[(u64, &str, Reader)]) -> Vec<String> {
     on_both_cores(cases, |index, (khz, bus, reader)| {
         let files = card(*khz, bus)?;
-        let (folder, _) = write(&format!("strangers-{test}-{index}"), &files);
-        let (passes, text) = play(&folder, &files, *reader);
-        eprintln!("case {index}, {khz} kHz, {bus}, {reader:?}: {passes}");
-        let _ = std::fs::remove_dir_all(folder);
-        (!passes).then(|| format!("{khz} kHz, {bus}, {reader:?}: {text}"))
+        let case = format!("{khz} kHz, {bus}, {reader:?}");
+        let check = Check::new(format!("bench at {case}")).files(&files);
+        check.source("gen/readers.rs").complaint_unless_passed(|| {
+            let (folder, _) = write(&format!("strangers-{test}-{index}"), &files);
+            let (passes, text) = play(&folder, &files, *reader);
+            eprintln!("case {index}, {case}: {passes}");
+            let _ = std::fs::remove_dir_all(folder);
+            (!passes).then(|| format!("{case}: {text}"))
+        })
     })
 }
 
@@ -132,6 +137,10 @@ fn a_failing_bench_has_an_exit_code() {
     let right = "check(\"identification word 0\", word(0), 32'h456E4474);";
     assert_eq!(text.matches(right).count(), 1);
     *text = text.replace(right, &right.replace("4474", "4475"));
+    let check = Check::new("exit code of a failing bench").files(&files);
+    let Some(_running) = check.source("gen/readers.rs").begin() else {
+        return;
+    };
     for (name, reader) in [("icarus", Icarus("-g2005")), ("verilator", Verilator)] {
         let (folder, _) = write(&format!("strangers-exit-{name}"), &files);
         let (is_good, text) = play(&folder, &files, reader);
@@ -151,6 +160,10 @@ fn passes_with(test: &str, changes: &[(&str, &str)]) {
     let text = at_50_mhz(preset("s6_two_channel").unwrap());
     let text = changes.iter().fold(text, change);
     let files = endat_gen::emit(&parse("changed.toml", &text).unwrap()).unwrap();
+    let check = Check::new(format!("bench of {test}")).files(&files);
+    let Some(_running) = check.source("gen/readers.rs").begin() else {
+        return;
+    };
     let (folder, _) = write(test, &files);
     let (is_good, text) = play(&folder, &files, Icarus("-g2012"));
     assert!(is_good, "{text}");

@@ -2,6 +2,7 @@
 
 use super::benches::{has_tools, on_both_cores};
 use super::configurations::{emission, texts, Emission};
+use crate::passed::Check;
 use crate::tools::{self, run};
 use crate::verilog::write;
 use endat_gen::config::Configuration;
@@ -25,12 +26,21 @@ fn check(
 ) {
     let said = on_both_cores(texts, |_, (name, text)| {
         let emission = emission(name, text);
-        let (folder, _) = write(&format!("{test}-{name}"), &emission.files);
-        let wrong = of(&emission, &folder);
-        let _ = std::fs::remove_dir_all(folder);
-        let wrong = wrong.into_iter().map(|text| format!("{name}: {text}"));
-        let wrong: Vec<String> = wrong.collect();
-        (!wrong.is_empty()).then(|| wrong.join("\n"))
+        let check = Check::new(format!("{test} of emission {name}")).files(&emission.files);
+        let check = check
+            .text(text)
+            .source("gen/readers.rs")
+            .source("tests/cocotb");
+        check
+            .source("tests/strangers/emissions.rs")
+            .complaint_unless_passed(|| {
+                let (folder, _) = write(&format!("{test}-{name}"), &emission.files);
+                let wrong = of(&emission, &folder);
+                let _ = std::fs::remove_dir_all(folder);
+                let wrong = wrong.into_iter().map(|text| format!("{name}: {text}"));
+                let wrong: Vec<String> = wrong.collect();
+                (!wrong.is_empty()).then(|| wrong.join("\n"))
+            })
     });
     assert!(said.is_empty(), "{}", said.join("\n"));
 }

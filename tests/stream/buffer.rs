@@ -1,6 +1,7 @@
 //! The buffer: overflow, clear, on and off, readers of every kind.
 
 use super::rig::*;
+use crate::passed::once_for_this_core;
 use crate::tools;
 use endat_hdl::card::stream::buffer::{frame_bytes, BUFFER_BYTES};
 
@@ -78,6 +79,7 @@ fn what_does_not_fit_is_dropped_whole_at_every_fill_level() {
 
 #[test]
 fn every_size_carries_many_times_its_bytes() {
+    once_for_this_core!();
     for bytes in BUFFER_BYTES {
         let mut rig = Rig::new(bytes, 2, true, true);
         let mut expected = Vec::new();
@@ -215,6 +217,7 @@ fn push_some(rig: &mut Rig, count: usize) {
 
 #[test]
 fn push_switched_off_or_cleared_in_mid_frame_ends_the_frame_first() {
+    once_for_this_core!();
     let mut rig = Rig::new(1024, 2, true, true);
     for taken in 0..=28 {
         for clear in [false, true] {
@@ -253,6 +256,7 @@ fn push_switched_off_or_cleared_in_mid_frame_ends_the_frame_first() {
 
 #[test]
 fn a_frame_that_the_host_has_read_half_of_is_not_pushed_and_a_clear_ends_it() {
+    once_for_this_core!();
     let mut rig = Rig::new(1024, 2, true, false);
     for taken in 0..=28 {
         for clear in [false, true] {
@@ -286,6 +290,7 @@ fn a_frame_that_the_host_has_read_half_of_is_not_pushed_and_a_clear_ends_it() {
 
 #[test]
 fn a_clear_at_any_moment_of_a_set_leaves_whole_frames() {
+    once_for_this_core!();
     let mut rig = Rig::new(1024, 2, true, false);
     for moment in 0..500 {
         rig.reset();

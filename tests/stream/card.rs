@@ -2,6 +2,7 @@
 
 use super::line::{card, words_of, Item, Line};
 use super::rig::{Set, FRESH, MISSING, TAKEN, VALID};
+use crate::passed::once_for_this_core;
 use endat_hdl::config::StreamStart::{Collect, Off, Push};
 use endat_hdl::regs::{CARD, CARD_CONFIG, VERSION};
 
@@ -54,6 +55,7 @@ fn version() -> u32 {
 
 #[test]
 fn every_set_comes_at_full_rate_with_register_accesses_in_between() {
+    once_for_this_core!();
     // 93 per cent of 3 Mbit/s, 75 of 6.
     for (sample_hz, baud, sets_wanted) in [(10_000, 3_000_000, 250), (16_000, 6_000_000, 300)] {
         let config = card(96_000_000, sample_hz, baud, Push);
@@ -98,6 +100,7 @@ fn every_set_comes_at_full_rate_with_register_accesses_in_between() {
 
 #[test]
 fn a_host_that_asks_for_too_much_loses_whole_sets_and_is_told() {
+    once_for_this_core!();
     let config = card(96_000_000, 10_000, 3_000_000, Push);
     let mut line = Line::new(&config);
     // All results again and again, one command after the other's answer: frames get less than their share.
@@ -159,6 +162,7 @@ fn switching_off_leaves_the_plain_link_and_marks_the_first_answer() {
 
 #[test]
 fn a_client_that_polls_gets_the_same_stream() {
+    once_for_this_core!();
     let config = card(96_000_000, 2_000, 3_000_000, Collect);
     let mut line = Line::new(&config);
     let mut bytes = Vec::new();

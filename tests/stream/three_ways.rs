@@ -1,6 +1,7 @@
 //! Stream, a channel's part and a whole card with a stream: kernels, engines and emitted Verilog agree in every cycle.
 
 use super::rig::{Access, Channel, Rig};
+use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::card::stream::{buffer::SetParts, channel::SetChannel, Stream};
 use rtl_design::elaborate::elaborate;
@@ -55,6 +56,7 @@ fn recorded() -> (Stimulus, Stimulus) {
 
 #[test]
 fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
+    once_for_this_core!();
     let (stream, channel) = recorded();
     let mut block = Stream::new(1024, 1, true, false, SetParts::default());
     block.connect_all();

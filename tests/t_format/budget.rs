@@ -1,6 +1,7 @@
 //! Single upsets of every flip-flop at every moment of every kind of exchange, in lanes: no wrong position in silence, no hang,
 //! nobody drives against the encoder, and no byte of an EEPROM is written that nobody asked for.
 
+use crate::passed::once_for_this_core;
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_hdl::t_format::port::TFormatPort;
 use endat_sim::encoder::Drive;
@@ -524,11 +525,13 @@ fn holds(is_card: bool, elsewhere: &str) {
 
 #[test]
 fn an_upset_of_a_card_s_port_is_masked_or_told_and_drives_and_writes_nothing() {
+    once_for_this_core!();
     // The snapshot is that of every protocol.
     holds(true, "snapshot.");
 }
 
 #[test]
 fn an_upset_of_the_receiver_is_masked_or_told_and_drives_and_writes_nothing() {
+    once_for_this_core!();
     holds(false, "none");
 }

@@ -1,6 +1,7 @@
 //! Each thing that can go wrong has its cause, spoils no position and hangs nothing.
 
 use super::rig::{Map, Rig};
+use crate::passed::once_for_this_core;
 use endat_hdl::t_format::{cause, protocol::Request};
 use endat_sim::t_format::{Defect, EncoderConfig};
 
@@ -110,6 +111,7 @@ fn alarms_of_the_encoder_come_with_its_position() {
 
 #[test]
 fn any_single_wrong_bit_of_any_reply_is_seen() {
+    once_for_this_core!();
     for request in Request::ALL {
         let mut rig = Rig::new(20, config(Defect::None));
         rig.memory(request.id(), 5, 0x5A);

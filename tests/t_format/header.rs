@@ -1,6 +1,7 @@
 //! The header is found at every phase of the bit, with rate error and jitter, and nothing else is taken for one.
 
 use super::lanes::{kind_reply, levels, Conditions, Many, Sent, BIT, LANES};
+use crate::passed::once_for_this_core;
 use endat_hdl::t_format::cause;
 
 const FRAMES: usize = 100_000;
@@ -41,6 +42,7 @@ fn none_is_lost(conditions: Conditions) {
 
 #[test]
 fn no_frame_is_lost_at_20_mhz() {
+    once_for_this_core!();
     for (rate_error_ppm, jitter) in [(0, 0), (0, 45_000), (30_000, 15_000), (-30_000, 15_000)] {
         none_is_lost(Conditions {
             system_mhz: 20,
@@ -52,6 +54,7 @@ fn no_frame_is_lost_at_20_mhz() {
 
 #[test]
 fn no_frame_is_lost_at_60_mhz() {
+    once_for_this_core!();
     for (rate_error_ppm, jitter) in [(0, 0), (0, 75_000), (30_000, 30_000), (-30_000, 30_000)] {
         none_is_lost(Conditions {
             system_mhz: 60,
@@ -105,10 +108,12 @@ fn none_is_made_up(system_mhz: u64) {
 
 #[test]
 fn no_frame_is_made_up_at_20_mhz() {
+    once_for_this_core!();
     none_is_made_up(20);
 }
 
 #[test]
 fn no_frame_is_made_up_at_60_mhz() {
+    once_for_this_core!();
     none_is_made_up(60);
 }

@@ -1,6 +1,7 @@
 //! The receiver with its bus: kernels, engines and emitted Verilog agree in every cycle.
 
 use super::rig::{design, Rig};
+use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_sim::rng::Rng;
@@ -38,6 +39,7 @@ fn recorded() -> Stimulus {
 
 #[test]
 fn the_receiver_agrees_in_kernels_engines_and_verilog() {
+    once_for_this_core!();
     let block = AsyncDsp::new(&TFormatStart::default());
     let mut kernel = kernel_engine!(block; clk_i;
         in rst_i, clk_select_i, trigger_i, bus_cs_n_i, bus_rd_n_i, bus_wr_n_i, bus_address_i, bus_data_i, encoder_data_i;

@@ -1,5 +1,6 @@
 //! Every state that a T-format port can be brought into, reached or not: the next triggers work, nothing hangs.
 
+use crate::passed::once_for_this_core;
 use endat_hdl::t_format::{channel::TFormatChannel, port::TFormatPort};
 use endat_sim::encoder::Drive;
 use endat_sim::rng::Rng;
@@ -193,6 +194,7 @@ fn upset(port: &Port) -> (usize, Vec<String>) {
 
 #[test]
 fn whatever_state_a_port_of_a_card_is_brought_into_the_next_triggers_work() {
+    once_for_this_core!();
     let (count, lost) = upset(&Port::card());
     assert!(count > 5_000, "{count}");
     assert!(lost.is_empty(), "{} of {count}: {lost:#?}", lost.len());
@@ -200,6 +202,7 @@ fn whatever_state_a_port_of_a_card_is_brought_into_the_next_triggers_work() {
 
 #[test]
 fn whatever_state_a_receiver_is_brought_into_the_next_triggers_work() {
+    once_for_this_core!();
     let (count, lost) = upset(&Port::receiver());
     assert!(count > 3_000, "{count}");
     assert!(lost.is_empty(), "{} of {count}: {lost:#?}", lost.len());

@@ -1,5 +1,6 @@
 //! Budgets: the exact area of card, channel and blocks. A change that is meant is taken over with `UPDATE_EXPECT=1 cargo test`.
 
+use crate::passed::is_wanted;
 use crate::tools;
 use endat_gen::area::{self, Family, Subject, Usage, ICE40, XC6S};
 use std::fmt::Write as _;
@@ -10,8 +11,6 @@ use std::sync::OnceLock;
 
 const TABLE: &str = "tests/data/area.toml";
 const HEAD: &str = "# LUTs and flip-flops after synthesis with yosys 0.70, exact; `of` is a digest of the text that was measured. Renew with: UPDATE_EXPECT=1 cargo test area\n";
-/// Measured in every run, whatever the table says of their text. The others are as soon as their text is another one, and all of them in a whole run.
-const ALWAYS: [&str; 3] = ["channel", "card_stream", "async_dsp"];
 
 /// Whether the synthesis tool is there in the version that the figures are made with.
 pub fn require(check: &str) -> bool {
@@ -36,9 +35,9 @@ pub fn require(check: &str) -> bool {
     right
 }
 
-/// What the table says of a text that it has measured.
+/// What the table says of a text that it has measured; nothing where it is to be measured again.
 fn known(table: &toml::Table, subject: &Subject, family: &Family, of: &str) -> Option<Usage> {
-    if ALWAYS.contains(&subject.name) || tools::is_whole() {
+    if is_wanted(&format!("area of {} in {}", subject.name, family.name)) {
         return None;
     }
     let row = table.get(subject.name)?.get(family.name)?;

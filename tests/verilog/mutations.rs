@@ -1,6 +1,7 @@
 //! Ways to break the emitted card: one text in one file becomes another.
 
 /// One change of the emitted Verilog.
+#[derive(Debug)]
 pub struct Mutation {
     /// What it breaks.
     pub name: &'static str,

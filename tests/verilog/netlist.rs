@@ -1,6 +1,7 @@
 //! The card synthesised for every family: it can be, its synchronisers stay flip-flops, and the netlists do what the RTL does.
 
 use super::{area::require, compile, is_core, name_of, quick_files, write};
+use crate::passed::Check;
 use crate::tools;
 use endat_gen::area::{self, Family, Synthesis, ECP5, GOWIN, ICE40, XC6S, XC7};
 use endat_gen::artifact::Artifact;
@@ -29,6 +30,12 @@ fn xc6s() -> &'static Synthesis {
     DONE.get_or_init(|| synthesised(&XC6S))
 }
 
+/// What of a family is decided by the card and by who synthesises it and plays to it.
+fn seen(family: &Family, what: &str) -> Check {
+    let check = Check::new(format!("{what} for {}", family.name)).files(quick_files());
+    check.source("gen/area").source("tests/verilog/netlist.rs")
+}
+
 fn has_flip_flops(synthesis: &Synthesis) {
     // Two channels with their results, configuration and counters.
     assert!(synthesis.usage.ff > 1000, "{:?}", synthesis.usage);
@@ -45,7 +52,7 @@ fn card_synthesises_for_7_series_and_gowin() {
         let families = [XC7, GOWIN];
         let turn = quick_files().iter().map(|file| file.text.len()).sum();
         for family in tools::third(&families, turn) {
-            has_flip_flops(&synthesised(family));
+            seen(family, "synthesis").unless_passed(|| has_flip_flops(&synthesised(family)));
         }
     }
 }
@@ -68,9 +75,12 @@ fn marked_registers() -> BTreeSet<String> {
 
 #[test]
 fn synchronisers_of_the_card_stay_flip_flops() {
-    if !require("synchronisers in the netlist of the card") {
-        return;
+    if require("synchronisers in the netlist of the card") {
+        seen(&XC6S, "synchronisers").unless_passed(synchronisers_stay);
     }
+}
+
+fn synchronisers_stay() {
     let text = fs::read_to_string(&xc6s().json).unwrap();
     let netlist: Value = serde_json::from_str(&text).unwrap();
     let module = &netlist["modules"][DEFAULT_PRESET];
@@ -316,6 +326,10 @@ fn gate_level(family: &Family) {
     if !(require(&check) && tools::require("iverilog", &check) && tools::require("yosys", &check)) {
         return;
     }
+    seen(family, "gate level").unless_passed(|| netlist_equals(family));
+}
+
+fn netlist_equals(family: &Family) {
     let synthesis = match family.name {
         "xc6s" => xc6s().clone(),
         _ => synthesised(family),

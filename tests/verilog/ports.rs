@@ -1,5 +1,6 @@
 //! Every port of every block of the emitted Verilog, in every cycle of its bench, against the design. This is what `campaign mutants` counts as `ports`.
 
+use crate::passed::Check;
 use crate::tools;
 use endat_gen::campaign::mutants::recorder::{self, Watched};
 use endat_gen::campaign::mutants::stimulus::CYCLES;
@@ -77,6 +78,16 @@ fn differing(emission: &Emission, recording: &Recording) -> Vec<String> {
     differing.map(|(_, module)| module.name.clone()).collect()
 }
 
+/// What is decided by emission, engine and what is put in.
+fn seen(what: &str, emission: &Emission) -> Check {
+    let check = Check::new(format!("{what} of {}", emission.subject.name));
+    let check = check
+        .files(&emission.subject.files)
+        .text(&emission.bench.text);
+    let check = check.source("design").source("gen/campaign/mutants");
+    check.source("tests/verilog/ports.rs")
+}
+
 fn ports_agree(preset: &str) {
     if !tools::require("verilator", &format!("ports of {preset}")) {
         return;
@@ -99,7 +110,8 @@ fn every_port_of_the_shipped_card_does_what_the_design_does() {
 fn every_block_of_a_card_alone_does_with_random_inputs_what_the_design_does() {
     let preset = "s6_two_channel";
     if tools::require("verilator", &format!("blocks of {preset} alone")) {
-        blocks_agree(preset, QUICK_CYCLES);
+        let emission = Emission::named(preset).unwrap();
+        seen("blocks alone", &emission).unless_passed(|| blocks_agree(preset, QUICK_CYCLES));
     }
 }
 
@@ -121,7 +133,11 @@ fn every_port_of_a_receiver_does_what_the_design_does_and_another_block_is_named
     if !tools::require("verilator", "ports of a receiver") {
         return;
     }
-    let mut emission = Emission::named(preset).unwrap();
+    let emission = Emission::named(preset).unwrap();
+    seen("ports", &emission).unless_passed(|| every_port_agrees_and_another_is_named(emission));
+}
+
+fn every_port_agrees_and_another_is_named(mut emission: Emission) {
     let recording = record(&emission).unwrap();
     assert_eq!(differing(&emission, &recording), Vec::<String>::new());
     // The data of a write, which nobody takes before its end, follow the pins while something is read, too.

@@ -2,8 +2,7 @@
 //! requests, continuous clock.
 
 use super::mutations::{mutation, Mutation};
-use super::testbench::{assert_passes, check_mutations, run_bench};
-use crate::tools;
+use super::testbench::{bench_passes, check_mutations};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, parse};
 use endat_hdl::card::bus::HostBus;
@@ -117,17 +116,13 @@ fn slow(system_hz: &str, more: &str) -> Vec<Artifact> {
 
 #[test]
 fn bench_of_a_card_for_a_control_loop_passes_only_as_it_stands() {
-    if tools::require("iverilog", "emitted test bench") {
-        check_mutations("purpose", &card(), BROKEN);
-    }
+    check_mutations("purpose", &card(), BROKEN);
 }
 
 #[test]
 fn bench_of_a_card_with_services_passes_only_as_it_stands() {
-    if tools::require("iverilog", "emitted test bench") {
-        let more = "[service]\nparts = [\"requests\", \"continuous\"]\n[safety]\nparts = [\"second_receiver\", \"error_test\"]\n";
-        check_mutations("services", &slow("25_000_000", more), BROKEN_SERVICES);
-    }
+    let more = "[service]\nparts = [\"requests\", \"continuous\"]\n[safety]\nparts = [\"second_receiver\", \"error_test\"]\n";
+    check_mutations("services", &slow("25_000_000", more), BROKEN_SERVICES);
 }
 
 /// Shown by additional data.
@@ -198,22 +193,18 @@ fn without_initial_values(parts: &str) -> Vec<Artifact> {
 /// Catches what only start values bring to life, and a bench that does not see it.
 #[test]
 fn a_card_without_initial_values_comes_to_life_by_its_reset() {
-    if tools::require("iverilog", "emitted test bench") {
-        let card = without_initial_values("\"requests\", \"diagnosis\"");
-        check_mutations("start", &card, BROKEN_START);
-    }
+    let card = without_initial_values("\"requests\", \"diagnosis\"");
+    check_mutations("start", &card, BROKEN_START);
 }
 
 /// The same where the bench gives the services another list, and another program.
 #[test]
 #[ignore = "two minutes: --ignored without_initial_values"]
 fn services_without_initial_values_come_to_life_by_their_reset() {
-    if tools::require("iverilog", "emitted test bench") {
-        let list = without_initial_values("\"requests\"]\ninfos = [0x4C, 0x59");
-        check_mutations("start-list", &list, BROKEN_INFOS);
-        let initialise = without_initial_values("\"requests\", \"initialise\"");
-        assert_passes(&run_bench("start-initialise", &initialise, &[]));
-    }
+    let list = without_initial_values("\"requests\"]\ninfos = [0x4C, 0x59");
+    check_mutations("start-list", &list, BROKEN_INFOS);
+    let initialise = without_initial_values("\"requests\", \"initialise\"");
+    bench_passes("start-initialise", &initialise, &[]);
 }
 
 /// Catches a bench that leaves out what a published system is for.
@@ -279,8 +270,6 @@ fn benches_of_the_published_systems_do_what_those_are_for() {
         }
     }
     // The control loop's runs quickly.
-    if tools::require("iverilog", "emitted test bench") {
-        let files = endat_gen::emit(&load_preset("clb_2mhz").unwrap()).unwrap();
-        assert_passes(&run_bench("purpose-clb", &files, &["+slow"]));
-    }
+    let files = endat_gen::emit(&load_preset("clb_2mhz").unwrap()).unwrap();
+    bench_passes("purpose-clb", &files, &["+slow"]);
 }

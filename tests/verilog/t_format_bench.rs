@@ -2,13 +2,11 @@
 
 use super::quick;
 use super::t_format_mutations::{MIXED_MUTATIONS, T_FORMAT_MUTATIONS};
-use super::testbench::{assert_passes, check_mutations, run_bench};
-use crate::tools;
+use super::testbench::{bench_passes, check_mutations};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, parse};
 
 const PRESET: &str = "mixed_protocols";
-const CHECK: &str = "test bench with T-format encoders";
 const ENDAT: &str = "[[channel]]\nposition_bits = 29\ncommand = \"111000\"\n";
 
 fn t_format(keys: &str) -> String {
@@ -30,24 +28,19 @@ fn card(channels: &[String], more: &str) -> Vec<Artifact> {
 }
 
 fn passes(name: &str, channels: &[String], more: &str) {
-    assert_passes(&run_bench(name, &card(channels, more), &[]));
+    bench_passes(name, &card(channels, more), &[]);
 }
 
 /// As it is emitted: slow link, timer.
 #[test]
 fn it_passes_on_the_mixed_preset() {
-    if tools::require("iverilog", CHECK) {
-        let files = endat_gen::emit(&load_preset(PRESET).unwrap()).unwrap();
-        assert_passes(&run_bench("mixed-preset", &files, &[]));
-    }
+    let files = endat_gen::emit(&load_preset(PRESET).unwrap()).unwrap();
+    bench_passes("mixed-preset", &files, &[]);
 }
 
 /// Every request that a trigger may send, both rates, every order of the channels, the shortest and the longest pauses.
 #[test]
 fn it_passes_on_other_cards() {
-    if !tools::require("iverilog", CHECK) {
-        return;
-    }
     let endat = || ENDAT.to_owned();
     passes(
         "t-format-first",
@@ -76,21 +69,17 @@ fn it_passes_on_other_cards() {
 /// A card that initialises its EnDat encoders has them asleep first, and T-format encoders as well.
 #[test]
 fn it_passes_on_a_card_with_initialisation() {
-    if tools::require("iverilog", CHECK) {
-        let parts =
-            "[service]\nparts = [\"requests\", \"diagnosis\", \"continuous\", \"initialise\"]\n";
-        let channels = [t_format("request = 8"), ENDAT.to_owned()];
-        passes("t-format-initialise", &channels, parts);
-    }
+    let parts =
+        "[service]\nparts = [\"requests\", \"diagnosis\", \"continuous\", \"initialise\"]\n";
+    let channels = [t_format("request = 8"), ENDAT.to_owned()];
+    passes("t-format-initialise", &channels, parts);
 }
 
 /// One channel alone: the least that has everything, so the quickest to simulate.
 #[test]
 fn it_fails_on_every_broken_card() {
-    if tools::require("iverilog", "mutations of the T-format channels") {
-        let files = card(&[t_format("request = 3")], "");
-        check_mutations("t-format-only", &files, T_FORMAT_MUTATIONS);
-        let files = endat_gen::emit(&quick(load_preset(PRESET).unwrap())).unwrap();
-        check_mutations("mixed", &files, MIXED_MUTATIONS);
-    }
+    let files = card(&[t_format("request = 3")], "");
+    check_mutations("t-format-only", &files, T_FORMAT_MUTATIONS);
+    let files = endat_gen::emit(&quick(load_preset(PRESET).unwrap())).unwrap();
+    check_mutations("mixed", &files, MIXED_MUTATIONS);
 }

@@ -2,6 +2,7 @@
 
 use super::mutations::{Mutation, MUTATIONS};
 use super::{compile, file_of, has_block, preset_files, quick_files, quick_project, write};
+use crate::passed::Check;
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse, preset};
@@ -9,8 +10,11 @@ pub use endat_gen::readers::passes;
 use endat_hdl::config::{ServiceParts, LIST};
 use endat_hdl::endat::service::program::{program, ServiceTimes};
 
+/// Who runs the benches.
+const OWN: &str = "tests/verilog/testbench.rs";
+
 /// The bench has passed.
-pub fn assert_passes(text: &str) {
+fn assert_passes(text: &str) {
     assert!(passes(text), "{text}");
 }
 
@@ -30,23 +34,27 @@ pub fn run_bench(test: &str, files: &[Artifact], plusargs: &[&str]) -> String {
     text
 }
 
+/// A card's own test bench passes.
+pub fn bench_passes(test: &str, files: &[Artifact], plusargs: &[&str]) {
+    if tools::require("iverilog", "emitted test bench") {
+        let check = Check::new(format!("bench of {test}")).files(files);
+        let check = check.text(&plusargs.join(" ")).source(OWN);
+        check.unless_passed(|| assert_passes(&run_bench(test, files, plusargs)));
+    }
+}
+
 #[test]
 fn bench_passes_on_the_preset() {
-    if tools::require("iverilog", "emitted test bench") {
-        assert_passes(&run_bench("preset", preset_files(), &[]));
-    }
+    bench_passes("preset", preset_files(), &[]);
 }
 
 /// Other channel counts, commands, widths, rates and cables; one channel, and a system clock with a fractional period.
 #[test]
 fn bench_passes_on_other_cards() {
-    if !tools::require("iverilog", "emitted test bench") {
-        return;
-    }
     let other = |name: &str, text: String| {
         let project = parse("other.toml", &text).unwrap();
         let files = endat_gen::emit(&project).unwrap();
-        assert_passes(&run_bench(name, &files, &[]));
+        bench_passes(name, &files, &[]);
     };
     let frame = "[clock]\nsystem_hz = 64_000_000\n[trigger]\nsample_hz = 1_000\nsources = [\"register\"]\n[link]\nbaud = 3_000_000\nread_hz = 100\n[board]\nname = \"papilio_pro\"\n";
     other(
@@ -74,7 +82,7 @@ fn bench_passes_on_a_card_whose_channels_have_triggers_of_their_own() {
         );
         let files = endat_gen::emit(&parse("own.toml", &text).unwrap()).unwrap();
         assert!(has_block(&files, "channel_trigger"));
-        assert_passes(&run_bench("own_triggers", &files, &[]));
+        bench_passes("own_triggers", &files, &[]);
     }
 }
 
@@ -95,7 +103,7 @@ fn bench_passes_on_a_card_with_all_line_parts() {
         let text = format!("{head}[line]{}", tail.replacen("parts = []", parts, 1));
         let files = endat_gen::emit(&parse("line.toml", &text).unwrap()).unwrap();
         assert!(has_block(&files, "line_monitor"));
-        assert_passes(&run_bench("line", &files, &[]));
+        bench_passes("line", &files, &[]);
     }
 }
 
@@ -107,7 +115,7 @@ fn bench_passes_on_a_card_with_requests() {
         project.card.service.requests = true;
         let files = endat_gen::emit(&project).unwrap();
         assert!(has_block(&files, "service"));
-        assert_passes(&run_bench("requests", &files, &[]));
+        bench_passes("requests", &files, &[]);
     }
 }
 
@@ -126,7 +134,7 @@ fn bench_passes_on_a_card_with_initialisation_only_as_it_stands() {
         initialise: true,
     };
     let files = endat_gen::emit(&project).unwrap();
-    assert_passes(&run_bench("initialise", &files, &[]));
+    bench_passes("initialise", &files, &[]);
     type Change = fn(&mut ServiceTimes);
     let times = |change: Change| {
         let mut times = ServiceTimes::at(project.card.system_hz);
@@ -163,8 +171,12 @@ fn bench_passes_on_a_card_with_initialisation_only_as_it_stands() {
             }
         }
         assert_eq!(count, 1, "{name}");
-        let said = run_bench(&format!("initialise-{name}"), &broken, &["+first"]);
-        assert!(said.contains(complaint), "{name}: {said}");
+        let test = format!("initialise-{name}");
+        let check = Check::new(format!("bench of {test} says {complaint}"));
+        check.files(&broken).source(OWN).unless_passed(|| {
+            let said = run_bench(&test, &broken, &["+first"]);
+            assert!(said.contains(complaint), "{name}: {said}");
+        });
     }
 }
 
@@ -184,6 +196,15 @@ pub fn check_mutations(test: &str, files: &[Artifact], mutations: &[Mutation]) {
     let absent = mutations.iter().filter_map(|m| mutant(files, m).err());
     let absent: Vec<_> = absent.collect();
     assert!(absent.is_empty(), "{absent:#?}");
+    if tools::require("iverilog", "mutations of the emitted card") {
+        let check = Check::new(format!("bench of {test}, and with mutations"));
+        let check = check.files(files).text(&format!("{mutations:?}"));
+        let check = check.source(OWN);
+        check.unless_passed(|| try_mutations(test, files, mutations));
+    }
+}
+
+fn try_mutations(test: &str, files: &[Artifact], mutations: &[Mutation]) {
     let turn = files.iter().map(|file| file.text.len()).sum();
     let tried: Vec<_> = tools::third(mutations, turn).collect();
     assert!(!tried.is_empty());
@@ -212,7 +233,5 @@ pub fn check_mutations(test: &str, files: &[Artifact], mutations: &[Mutation]) {
 
 #[test]
 fn bench_fails_on_every_broken_card() {
-    if tools::require("iverilog", "mutations of the emitted card") {
-        check_mutations("quick", quick_files(), MUTATIONS);
-    }
+    check_mutations("quick", quick_files(), MUTATIONS);
 }

@@ -3,6 +3,7 @@
 mod files;
 mod mutations;
 
+use crate::passed::Check;
 use crate::tools;
 use crate::verilog::mutations::Mutation;
 use endat_gen::artifact::Artifact;
@@ -77,14 +78,22 @@ fn bench(folder: &Path, files: &[Artifact], standard: &str) -> (bool, String) {
     ghdl(folder, files, standard, &[&file], &run)
 }
 
+/// What is decided by these files, read as this standard.
+fn seen(what: &str, files: &[Artifact], standard: &str) -> Check {
+    let check = Check::new(format!("VHDL {standard}: {what}")).files(files);
+    check.source("tests/vhdl")
+}
+
 fn assert_passes(test: &str, files: &[Artifact], standard: &str) {
-    let folder = write(test, files);
-    let (is_good, text) = bench(&folder, files, standard);
-    // Not a warning of numeric_std stands before it.
-    assert!(
-        is_good && text.trim() == "PASS",
-        "{test} {standard}: {text}"
-    );
+    seen(&format!("bench of {test}"), files, standard).unless_passed(|| {
+        let folder = write(test, files);
+        let (is_good, text) = bench(&folder, files, standard);
+        // Not a warning of numeric_std stands before it.
+        assert!(
+            is_good && text.trim() == "PASS",
+            "{test} {standard}: {text}"
+        );
+    });
 }
 
 /// Not a warning; with the component, and with the bench.
@@ -99,8 +108,10 @@ fn every_preset_is_analysed_and_elaborated_in_both_languages() {
         let (bench, component) = (format!("{name}_tb"), format!("{name}_component.vhd"));
         let more = [&component[..], &format!("{name}_tb.vhd")];
         for standard in STANDARDS {
-            let (is_good, text) = ghdl(&folder, &files, standard, &more, &[&bench, "--no-run"]);
-            assert!(is_good && text.is_empty(), "{name} {standard}: {text}");
+            seen(name, &files, standard).unless_passed(|| {
+                let (is_good, text) = ghdl(&folder, &files, standard, &more, &[&bench, "--no-run"]);
+                assert!(is_good && text.is_empty(), "{name} {standard}: {text}");
+            });
         }
     }
 }
@@ -165,17 +176,22 @@ fn ghdl_makes_netlists_of_the_presets() {
     }
     for name in ["s6_two_channel_service", "clb_2mhz", "async_dsp"] {
         let files = preset(name);
-        let folder = write(&format!("netlist-{name}"), &files);
-        let (_, sources) = listed(&files);
-        let arguments = [&["--synth", "--std=08"][..], &sources, &["-e", name]].concat();
-        let (is_good, text) = tools::run("ghdl", &folder, &arguments);
-        let complaints = text
-            .lines()
-            .filter(|line| line.contains("error") || line.contains("latch"));
-        let complaints: Vec<&str> = complaints.filter(|line| line.contains(".vhd:")).collect();
-        assert!(is_good && complaints.is_empty(), "{name}: {complaints:?}");
-        assert!(text.contains(&format!("entity {name} is")), "{name}");
+        seen(&format!("netlist of {name}"), &files, "--std=08")
+            .unless_passed(|| makes_a_netlist(name, &files));
     }
+}
+
+fn makes_a_netlist(name: &str, files: &[Artifact]) {
+    let folder = write(&format!("netlist-{name}"), files);
+    let (_, sources) = listed(files);
+    let arguments = [&["--synth", "--std=08"][..], &sources, &["-e", name]].concat();
+    let (is_good, text) = tools::run("ghdl", &folder, &arguments);
+    let complaints = text
+        .lines()
+        .filter(|line| line.contains("error") || line.contains("latch"));
+    let complaints: Vec<&str> = complaints.filter(|line| line.contains(".vhd:")).collect();
+    assert!(is_good && complaints.is_empty(), "{name}: {complaints:?}");
+    assert!(text.contains(&format!("entity {name} is")), "{name}");
 }
 
 /// Not a warning about the top of a card on a board.
@@ -184,8 +200,10 @@ fn assert_top(test: &str, configuration: &Configuration, standard: &str) {
     let (name, _) = listed(&files);
     let folder = write(&format!("top-{test}"), &files);
     let (top, file) = (format!("{name}_top"), format!("{name}_top.vhd"));
-    let (is_good, text) = ghdl(&folder, &files, standard, &[&file], &[&top, "--no-run"]);
-    assert!(is_good && text.is_empty(), "{test}: {text}");
+    seen(&format!("top for {test}"), &files, standard).unless_passed(|| {
+        let (is_good, text) = ghdl(&folder, &files, standard, &[&file], &[&top, "--no-run"]);
+        assert!(is_good && text.is_empty(), "{test}: {text}");
+    });
 }
 
 #[test]
@@ -292,9 +310,16 @@ fn the_bench_fails_on_twenty_broken_cards() {
         config::parse_any_on("quick.toml", &format!("{QUICK_BEGINS}{QUICK_ENDS}"), None).unwrap();
     let files = emission(&card);
     assert_passes("whole", &files, STANDARDS[0]);
+    let check = seen("a card and with mutations", &files, STANDARDS[0]);
+    check
+        .text(&format!("{MUTATIONS:?}"))
+        .unless_passed(|| fails_on_broken(&files));
+}
+
+fn fails_on_broken(files: &[Artifact]) {
     let mut survivors = vec![];
     for (index, mutation) in MUTATIONS.iter().enumerate() {
-        let broken = mutant(&files, mutation).unwrap();
+        let broken = mutant(files, mutation).unwrap();
         let folder = write("mutant", &broken);
         let (is_good, text) = bench(&folder, &broken, STANDARDS[index % 2]);
         // It is the bench that has to see it, no compiler.
