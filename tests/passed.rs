@@ -2,8 +2,8 @@
 //! sources; both take minutes. Such a check is done again when anything has changed that it sees.
 //!
 //! `tests/data/passed.toml` has a digest of that for each check; `CI=true UPDATE_EXPECT=1 cargo test NAME` does what is not in it, and
-//! writes it down if it passes. All are done with `SUITE_WHOLE=1`; with `SUITE_TURN=N`, as in CI, every eighth is, whatever the table says, another eighth
-//! for each N: what a table cannot see, another version of a tool, is found within eight runs.
+//! writes it down if it passes. All are done with `SUITE_WHOLE=1`; with `SUITE_TURN=N`, as in CI, every eighth is, whatever the table
+//! says, another eighth for each N: what a table cannot see, another version of a tool, is found in time.
 
 use crate::tools;
 use endat_gen::artifact::{sha256, Artifact};

@@ -1,7 +1,7 @@
 //! Campaigns that count: parts, what they find, the page of their results.
 
 use super::run;
-use crate::passed::{Check, Running};
+use crate::passed::once_for_this_core;
 use crate::tools::third;
 use endat_gen::campaign::budget;
 use endat_gen::campaign::card::CardUpsets;
@@ -18,15 +18,6 @@ const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/campaigns/results");
 const CAMPAIGNS: [&str; 4] = ["upsets", "faults", "garbage", "accept"];
 const PAGE: &str = include_str!("../../docs/reliability.md");
 
-/// A campaign is decided by the core, by what counts, and by what was counted.
-fn once(test: &str) -> Option<Running> {
-    let check = Check::of_core(&format!("campaign::{test}"), file!());
-    check
-        .source("gen/campaign")
-        .source("campaigns/results")
-        .begin()
-}
-
 fn done(folder: &Path, arguments: &[&str], out: &str) -> Vec<u8> {
     let path = folder.join(out);
     let all = [arguments, &["--out", path.to_str().unwrap()]].concat();
@@ -38,11 +29,7 @@ fn done(folder: &Path, arguments: &[&str], out: &str) -> Vec<u8> {
 /// Each campaign is cut where its batches are not, so every case has other neighbours.
 #[test]
 fn any_split_gives_byte_for_byte_what_one_run_gives_and_a_lost_part_is_run_again_alone() {
-    let Some(_running) =
-        once("any_split_gives_byte_for_byte_what_one_run_gives_and_a_lost_part_is_run_again_alone")
-    else {
-        return;
-    };
+    once_for_this_core!("gen/campaign", "campaigns/results");
     let folder = crate::tools::folder("campaign_parts");
     let campaigns = [
         &["upsets", "--subject", "port_all", "--cases", "700"][..],
@@ -141,10 +128,7 @@ fn upsets(port: Port, draw: Draw, only: &str) -> Tally {
 /// Catches registers that a campaign forgets, those on the falling edge among them.
 #[test]
 fn every_flip_flop_of_every_port_is_inverted_in_every_kind_of_frame() {
-    let Some(_running) = once("every_flip_flop_of_every_port_is_inverted_in_every_kind_of_frame")
-    else {
-        return;
-    };
+    once_for_this_core!("gen/campaign", "campaigns/results");
     for port in Port::ALL {
         let engine = Lanes::new(&port.design().unwrap(), Keep::Registers, LaneWords::Two).unwrap();
         let flops: usize = engine.registers().map(|r| engine.width_bits(r)).sum();
@@ -189,9 +173,7 @@ fn card(places: &[&str], moments: u64) -> Tally {
 /// The host must notice what it can, and the judge what it cannot.
 #[test]
 fn upsets_of_the_card_that_must_be_seen_are_seen() {
-    let Some(_running) = once("upsets_of_the_card_that_must_be_seen_are_seen") else {
-        return;
-    };
+    once_for_this_core!("gen/campaign", "campaigns/results");
     let (rings, time, held) = (
         ["core.registers_1.ring.w2", "core.bank.ring.w1"],
         "core.timebase.cycles",
@@ -215,10 +197,7 @@ fn upsets_of_the_card_that_must_be_seen_are_seen() {
 /// that waits for minutes because the word that says how long was upset.
 #[test]
 fn neither_the_link_nor_a_slower_clock_nor_a_service_stands_for_ever() {
-    let Some(_running) = once("neither_the_link_nor_a_slower_clock_nor_a_service_stands_for_ever")
-    else {
-        return;
-    };
+    once_for_this_core!("gen/campaign", "campaigns/results");
     let service = "core.port_0.served_0.seen_17";
     let places = [
         "bridge.byte_ready",
@@ -238,9 +217,7 @@ fn neither_the_link_nor_a_slower_clock_nor_a_service_stands_for_ever() {
 /// The budgets that are asserted hold in a small part of each campaign.
 #[test]
 fn a_quick_run_of_each_campaign_keeps_its_budgets() {
-    let Some(_running) = once("a_quick_run_of_each_campaign_keeps_its_budgets") else {
-        return;
-    };
+    once_for_this_core!("gen/campaign", "campaigns/results");
     for campaign in third(&CAMPAIGNS, PAGE.len()) {
         let outcome = run(&["campaign", campaign, "--quick"]);
         assert_eq!(outcome.exit_code, 0, "{}", outcome.stdout);
@@ -274,9 +251,7 @@ fn the_page_is_what_the_results_say() {
 /// Some of the cases again: their rows must be the committed ones.
 #[test]
 fn the_results_are_those_of_this_core() {
-    let Some(_running) = once("the_results_are_those_of_this_core") else {
-        return;
-    };
+    once_for_this_core!("gen/campaign", "campaigns/results");
     let Part {
         identity,
         tally: all,
