@@ -36,7 +36,7 @@ macro_rules! once_for_this_core {
         let name = name
             .trim_start_matches("system::")
             .trim_end_matches("::here");
-        let check = $crate::passed::Check::of_core(name, file!())$(.source($more))*;
+        let check = $crate::passed::Check::of_core(name, file!()).sources(&[$($more),*]);
         let Some(_running) = check.begin() else {
             return;
         };
@@ -63,10 +63,7 @@ impl Check {
     pub fn of_core(name: &str, file: &str) -> Self {
         let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
         let own = if folder == "tests" { file } else { folder };
-        let check = CORE
-            .iter()
-            .fold(Check::new(name), |check, path| check.source(path));
-        check.source(own)
+        Check::new(name).sources(&CORE).source(own)
     }
 
     pub fn text(mut self, text: &str) -> Self {
@@ -106,6 +103,11 @@ impl Check {
         names.sort();
         let inside = names.iter().map(|name| format!("{path}/{name}"));
         inside.fold(self, |check, path| check.source(&path))
+    }
+
+    /// All of these, see [`Check::source`].
+    pub fn sources(self, paths: &[&str]) -> Self {
+        paths.iter().fold(self, |check, path| check.source(path))
     }
 
     /// Begins the check, unless it has passed with just this. It has passed when this goes and no assertion has failed.

@@ -207,7 +207,7 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize) -> Vec<String> {
 /// A preset is a promise: an encoder within its limits gives positions and nothing else. Each limit is at either end twice, or more often.
 #[test]
 fn every_preset_runs_without_a_fault_at_corners_of_its_encoders() {
-    once_for_this_core!();
+    once_for_this_core!("tests/stream");
     let turn = include_str!("../hdl/endat/transaction.rs").len();
     let corners: &[usize] = match tools::is_whole() {
         true => &[0, 3, 5, 6, 9, 10, 12, 15],

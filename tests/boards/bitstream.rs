@@ -63,13 +63,12 @@ fn a_small_card_becomes_a_bitstream_that_meets_its_clock() {
     let project = parse("card.toml", &fs::read_to_string(&config).unwrap()).unwrap();
     let check =
         Check::new("bitstream of a small card").emission(&endat_gen::emit(&project).unwrap());
-    let paths = [
+    let check = check.sources(&[
         "gen/bitstream.rs",
         "gen/bitstream",
         "gen/cli",
         "tests/boards",
-    ];
-    let check = paths.iter().fold(check, |check, path| check.source(path));
+    ]);
     let Some(_running) = check.begin() else {
         return;
     };

@@ -52,12 +52,11 @@ fn a_bitstream_read_back_does_what_the_card_does() {
     let project = parse("card.toml", &text).unwrap();
     let files = endat_gen::emit(&project).unwrap();
     let check = Check::new("bitstream read back").files(&files);
-    let paths = [
+    let check = check.sources(&[
         "gen/bitstream.rs",
         "tests/boards/readback.rs",
         "tests/verilog/netlist.rs",
-    ];
-    let check = paths.iter().fold(check, |check, path| check.source(path));
+    ]);
     check.unless_passed(|| read_back_is_the_card(&dir, &project, files));
 }
 

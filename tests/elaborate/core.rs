@@ -137,7 +137,7 @@ fn channel_agrees(name: &str, features: Features) {
 
 #[test]
 fn the_card_agrees() {
-    once_for_this_core!();
+    once_for_this_core!("gen/bench");
     let project = load_preset("s6_two_channel").unwrap();
     let mut block = Card::new(&project.card);
     block.connect_all();

@@ -20,10 +20,7 @@ const SMALL: FrameCase = FrameCase {
 
 /// A check that the blocks decide, and who proves their frames.
 fn seen(what: &str) -> Check {
-    let paths = ["hdl", "design", "gen/prove", "tests/prove"];
-    paths
-        .iter()
-        .fold(Check::new(what), |check, path| check.source(path))
+    Check::of_core(what, file!()).source("gen/prove")
 }
 
 fn has_tools() -> bool {
