@@ -55,7 +55,7 @@ fn is_crc_or_silent(row: &Row) -> bool {
 }
 
 fn is_card(row: &Row) -> bool {
-    row.subject == super::card::SUBJECT
+    super::card::CardSubject::named(&row.subject).is_some()
 }
 
 fn is_setting(row: &Row) -> bool {

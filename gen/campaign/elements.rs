@@ -1,45 +1,57 @@
 //! The upsets by element, as a fault analysis (FMEDA) asks for them: what is safe, what is told, what nothing tells.
 
+use super::card::{in_channel, CardSubject};
 use super::report::{block, flips, grouped, Counts};
 use endat_sim::campaign::port::Class;
 use endat_sim::campaign::{Row, Tally};
 use std::fmt::Write;
 
-/// An element: subject, how its blocks begin, what it is, and what tells an upset of it.
-struct Element(
-    &'static str,
-    &'static [&'static str],
-    &'static str,
-    &'static str,
-);
+/// An element: how its blocks begin, what it is, and what tells an upset of it.
+struct Element(&'static [&'static str], &'static str, &'static str);
 
 const PORT: &str = "port_all";
-const CARD: &str = "card";
 
-/// Every block is in the first that fits.
+/// Those of a port, and of a channel of a card. Every block is in the first that fits.
 #[rustfmt::skip]
-const ELEMENTS: &[Element] = &[
-    Element(PORT, &["clock_gen", "sender"], "clock and mode command", "the encoder's answer: start bit, CRC, state of the line behind the frame"),
-    Element(PORT, &["receiver.check", "receiver.serial"], "the two CRCs", "each other"),
-    Element(PORT, &["receiver", "add_info"], "receiver", "CRC in parallel and serially, state of the line"),
-    Element(PORT, &["delay", "filter"], "line delay and input filter", "CRC, start window, parity of the delay"),
-    Element(PORT, &["settings"], "settings of the frame", "parity"),
-    Element(PORT, &["snapshot"], "result that is held", "parity of the position, of both copies"),
-    Element(PORT, &["transaction", "own_asked", "ride_asked"], "order of a frame, verdict", "second look at the state of the line, limits of every wait"),
-    Element(PORT, &["(top)"], "wiring of the channel", "CRC, causes"),
-    Element(CARD, &["bridge"], "UART link", "no answer, bytes that nobody asked for; of the address: nothing"),
-    Element(CARD, &["core.bank.ring", "core.registers_0.ring", "core.registers_1.ring"], "configuration", "ring with parity, told in every result"),
-    Element(CARD, &["core.bank", "core.registers"], "register bank, results for the host", "CRC5 of the position, stale"),
-    Element(CARD, &["core.whole"], "results with additional data", "CRC5 of the position"),
-    Element(CARD, &["core.set", "core.stream"], "stream", "parity of each set, CRC-16 of each frame, count of triggers"),
-    Element(CARD, &["core.service", "core.port"], "services", "answer of the encoder, its state"),
-    Element(CARD, &["core.trigger"], "trigger", "count of triggers"),
-    Element(CARD, &["core.timebase"], "time base", "nothing: time stamps are another moment's"),
+const OF_PORT: &[Element] = &[
+    Element(&["clock_gen", "sender"], "clock and mode command", "the encoder's answer: start bit, CRC, state of the line behind the frame"),
+    Element(&["receiver.check", "receiver.serial"], "the two CRCs", "each other"),
+    Element(&["receiver", "add_info"], "receiver", "CRC in parallel and serially, state of the line"),
+    Element(&["second"], "second receiver", "the first one"),
+    Element(&["delay", "filter"], "line delay and input filter", "CRC, start window, parity of the delay"),
+    Element(&["settings"], "settings of the frame", "parity"),
+    Element(&["snapshot"], "result that is held", "parity of the position, of both copies"),
+    Element(&["transaction", "own_asked", "ride_asked"], "order of a frame, verdict", "second look at the state of the line, limits of every wait"),
+    Element(&["(top)"], "wiring of the channel", "CRC, causes"),
 ];
 
-fn element(subject: &str, block: &str) -> Option<usize> {
-    let fits = |e: &Element| e.0 == subject && e.1.iter().any(|begin| block.starts_with(begin));
-    ELEMENTS.iter().position(fits)
+/// Those of a card around its channels.
+#[rustfmt::skip]
+const OF_CARD: &[Element] = &[
+    Element(&["bridge"], "UART link", "no answer, bytes that nobody asked for; of the address: nothing"),
+    Element(&["core.bank.ring", "core.registers_0.ring", "core.registers_1.ring"], "configuration", "ring with parity, told in every result"),
+    Element(&["core.bank", "core.registers"], "register bank, results for the host", "CRC5 of the position, stale"),
+    Element(&["core.whole"], "results with additional data", "CRC5 of the position"),
+    Element(&["core.set", "core.stream"], "stream", "parity of each set, CRC-16 of each frame, count of triggers"),
+    Element(&["core.service", "core.port"], "services", "answer of the encoder, its state"),
+    Element(&["core.trigger"], "trigger", "count of triggers"),
+    Element(&["core.timebase"], "time base", "nothing: time stamps are another moment's"),
+    Element(&["core.second"], "second interface", "CRC-16 of each channel, CRC5 of the position, count of answers"),
+    Element(&["core.recovery"], "recovery counter", "limits of the control that reads it; not read here"),
+];
+
+/// The element that a register is in, of the subjects that are told by element.
+fn element(row: &Row) -> Option<&'static Element> {
+    let (elements, block) = match (row.subject.as_str(), CardSubject::named(&row.subject)) {
+        (PORT, _) => (OF_PORT, block(&row.place)),
+        (_, Some(_)) => match in_channel(&row.place) {
+            Some(place) => (OF_PORT, block(place)),
+            None => (OF_CARD, block(&row.place)),
+        },
+        _ => return None,
+    };
+    let fits = |e: &&Element| e.0.iter().any(|begin| block.starts_with(begin));
+    elements.iter().find(fits)
 }
 
 /// Part of a whole, per cent.
@@ -68,33 +80,33 @@ fn line(text: &mut String, subject: &str, name: &str, counts: &Counts, told_by: 
     );
 }
 
-/// The table: a line for each element of the port with everything and of the card, and their sums.
+/// The table: a line for each element of the port with everything and of the cards, and their sums.
 pub fn table(tally: &Tally) -> String {
-    let of = |r: &Row| element(&r.subject, block(&r.place));
     let mut text = String::from(
         "| subject | element | upsets | safe, % | told, % | other, % | wrong position told as good, % | told of those that are not safe, % | without a wrong position, of the same, % | told by |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
-    for (index, counts) in grouped(tally, of) {
-        if let Some(index) = index {
-            let Element(subject, _, name, told_by) = ELEMENTS[index];
-            line(&mut text, subject, name, &counts, told_by);
+    let mut sums = String::new();
+    let subjects = [PORT]
+        .into_iter()
+        .chain(CardSubject::ALL.map(CardSubject::name));
+    for subject in subjects {
+        let of = |r: &Row| match r.subject == subject {
+            true => element(r).map(|e| e.1),
+            false => None,
+        };
+        let groups = grouped(tally, of);
+        for Element(_, name, told_by) in OF_PORT.iter().chain(OF_CARD) {
+            if let Some(counts) = groups.get(&Some(*name)) {
+                line(&mut text, subject, name, counts, told_by);
+            }
+        }
+        let all = grouped(tally, |r| of(r).is_some());
+        if let Some(counts) = all.get(&true) {
+            line(&mut sums, subject, "all", counts, "");
         }
     }
-    for (subject, counts) in grouped(tally, |r| of(r).map(|index| ELEMENTS[index].0)) {
-        if let Some(subject) = subject {
-            line(&mut text, subject, "all", &counts, "");
-        }
-    }
-    text
-}
-
-/// Blocks of the port with everything and of the card that no element has.
-#[cfg(test)]
-fn without_element(tally: &Tally) -> Vec<(&str, &str)> {
-    let blocks = grouped(tally, |r| (r.subject.as_str(), block(&r.place)));
-    let blocks = blocks.into_keys().filter(|(s, _)| [PORT, CARD].contains(s));
-    blocks.filter(|(s, b)| element(s, b).is_none()).collect()
+    text + &sums
 }
 
 #[cfg(test)]
@@ -106,19 +118,38 @@ mod tests {
     /// Catches a block that is new and in no element, or in a wrong one.
     #[test]
     fn every_block_is_in_an_element() {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/results/upsets.csv");
-        let part = Part::read(&file).unwrap();
-        assert_eq!(without_element(&part.tally), []);
-        let all = |subject| {
-            part.tally
-                .count(|r| r.subject == subject && Class::ALL.iter().any(|c| c.name() == r.class))
+        let read = |name: &str| {
+            let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/results");
+            Part::read(&file.join(name)).unwrap().tally
         };
-        let text = table(&part.tally);
-        for subject in [PORT, CARD] {
-            let sum = format!("| {subject} | all | {} |", all(subject));
-            assert!(text.contains(&sum), "{sum} {text}");
+        for (file, subject) in [
+            ("upsets.csv", PORT),
+            ("upsets.csv", CardSubject::Plain.name()),
+            ("upsets_safety.csv", CardSubject::Safety.name()),
+        ] {
+            let tally = read(file);
+            let of = |r: &Row| r.subject == subject;
+            let without: Vec<&Row> = (tally.rows().map(|(row, _)| row))
+                .filter(|r| of(r) && element(r).is_none())
+                .collect();
+            assert_eq!(without, Vec::<&Row>::new());
+            let all = tally.count(|r| of(r) && Class::ALL.iter().any(|c| c.name() == r.class));
+            let sum = format!("| {subject} | all | {all} |");
+            assert!(table(&tally).contains(&sum), "{sum}");
         }
-        assert!(element(CARD, "core.bank.ring") != element(CARD, "core.bank"));
-        assert!(element(PORT, "receiver.check") != element(PORT, "receiver"));
+        let name = |subject: &str, place: &str| {
+            let row = Row {
+                subject: subject.into(),
+                kind: "frame".into(),
+                place: place.into(),
+                class: Class::Masked.name().into(),
+            };
+            element(&row).map(|e| e.1)
+        };
+        assert_eq!(name(PORT, "receiver.check.sum"), Some("the two CRCs"));
+        let safety = CardSubject::Safety.name();
+        assert_eq!(name(safety, "core.bank.ring.w0"), Some("configuration"));
+        let held = "core.port_1.channel_0.snapshot.held";
+        assert_eq!(name(safety, held), Some("result that is held"));
     }
 }

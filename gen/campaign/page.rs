@@ -1,5 +1,6 @@
 //! The page that says what the core stands: tables from the results of whole campaigns.
 
+use super::card::CardSubject;
 use super::part::Part;
 use super::{budget, elements, report};
 use crate::error::GenError;
@@ -35,7 +36,7 @@ Beside its class, a case may have these marks:
 | next | the next frame was not good |
 | held_wrong | with a cause: the position that is held is none that the encoder sent |
 | triggers_2, triggers_3, triggers_more | which trigger after the frame was the first of two good ones in a row, if not the next; so a case may be here without `next`: good, bad, good, good |
-| slow | busy for longer than the timers allow, but not for ever; of a card: a service answered only after 60 ms of rest |
+| slow | busy for longer than the timers allow, but not for ever; of a card: a channel or a service came back only after 60 ms of rest |
 | config | of a card: its configuration is not what the host wrote, and nothing has said so |
 | reopened | of a card: the host had to open the connection anew |
 
@@ -61,20 +62,25 @@ After it the host goes on: a trigger at the pin, results of both channels, their
 and request asks both services for a parameter. What it is told counts as detected: a cause, no answer, bytes that nobody asked for, a CRC that does not fit, a damaged or missing \
 frame of the stream, a result that is stale, a number that is skipped, a request that is refused. Lost is a trigger without a result, or without a set; silent_other is a wrong time \
 stamp, a wrong answer, a configuration that is another one. After four triggers without two good ones, or three reads without an answer, the host opens the connection anew, as \
-[stream.md](stream.md) says, and writes its configuration again, settings of the services among it; a hang is no good result in 8 triggers after that, or a service that fulfils no request, four times, and then once more after 60 ms.
+[stream.md](stream.md) says, and writes its configuration again, settings of the services among it; a hang is no good result in 8 triggers after that, nor in 8 more after 60 ms of rest, or a service that fulfils no request, four times, and then once more after 60 ms.
 Ages, evidence and delays are not compared. The clocks are fast and pauses short: 8 cycles to a bit of the link, commands forgotten after 100 us, the longest wait of a service 16 ms.
 ";
 
 /// What stands above the upsets by element.
 const ELEMENTS: &str = "By element, as a fault analysis sorts them ([safety.md](safety.md); no FMEDA, which has rates and faults that stay): an upset is safe where every result is as without it; told by a cause, a position that is not fresh, or a check of \
 the host; other where a trigger is lost or something beside the position is wrong, and nothing tells it. \
-Subjects are the EnDat port with everything and the card behind the UART.
+Subjects are the EnDat port with everything, and a card behind the UART.
 
 ";
 
 /// What stands above the tables of a campaign.
-fn title(campaign: &str) -> Option<(&'static str, &'static str)> {
-    Some(match campaign {
+fn title(part: &Part) -> Option<(&'static str, &'static str)> {
+    let is_safety = part
+        .tally
+        .rows()
+        .all(|(row, _)| row.subject == CardSubject::Safety.name());
+    Some(match part.identity.campaign.as_str() {
+        "upsets" if is_safety => ("Upsets of a card with every monitor", "The card from above with all parts of `[safety]` ([safety.md](safety.md)); of this one the flip-flops of the channels are inverted, too. A second controller reads every result at the second interface: what it refuses counts as told, a wrong position that it takes as silent; the two controllers do not compare what they have. No forced error is due within a case, nor is the recovery counter read."),
         "upsets" => ("Upsets", "Every flip-flop inverted, at so many moments of every kind of frame, and of the card of every activity; system clock 32 MHz, 8 cycles to a bit, 25 bits, 20 m."),
         "faults" => ("Faults of the line", "Each begins in the frame and ends behind it, or ends in it, at every quarter of a bit; with each recovery time tm (000111: from 10 us) and cable."),
         "garbage" => ("Spoilt frames", "One in each case, at random. A word is taken by a CRC of 5 bits with 1 in 32, with F1 and F2 besides with 1 in 128."),
@@ -88,7 +94,7 @@ pub fn page(parts: &[Part]) -> Result<String, GenError> {
     let mut text = HEAD.to_owned();
     for part in parts {
         let name = &part.identity.campaign;
-        let Some((heading, about)) = title(name).filter(|_| part.shard == Shard::WHOLE) else {
+        let Some((heading, about)) = title(part).filter(|_| part.shard == Shard::WHOLE) else {
             return Err(GenError::input(format!(
                 "{name} {}: is not a whole campaign with a place on the page; merge its parts first",
                 part.shard
@@ -102,6 +108,10 @@ pub fn page(parts: &[Part]) -> Result<String, GenError> {
         text.push_str("| budget | found | limit, per mille | |\n|---|---|---|---|\n");
         for budget in budget::of(name) {
             let (bad, of) = budget.found(&part.tally);
+            // Nothing was tried that could break it.
+            if of == 0 {
+                continue;
+            }
             let verdict = match (budget.holds(&part.tally), budget.is_asserted) {
                 (true, true) => "holds, asserted",
                 (true, false) => "holds",

@@ -46,13 +46,14 @@ power-up --> ready --first frame--> rest --frame--> rest     and a cycle without
 
 It is an induction over frames. *Ready* and *rest* are a level for each register that controls, and anything for each that holds data. Every bit of the channel is followed through
 the gates that yosys makes of the Verilog, as an exclusive or of products of unknown bits. CRC, parities and shift registers are exclusive ors, so width costs next to nothing; for a
-solver of Boolean formulas they are the hardest part. A channel that comes back to rest with another level has a register that may be anything from then on, until nothing changes
+solver of Boolean formulas they are the hardest part. Each CRC bit that is sent becomes an unknown by itself, and an older bit the sum of it and others, so that the edges between
+CRC bits, which a tracked phase looks at, stay short. A channel that comes back to rest with another level has a register that may be anything from then on, until nothing changes
 any more. Where all phases of the microsecond are proved, that is every frame for ever; in the other rows every frame that begins in these phases.
 
 Settings, tcal (5 us), tm (11 us) and the delay are those of the row; the encoder is `gen/prove/frames/encoder.sv`, strict, and of its own making. That additional data have been
 selected is taken as given; their warning bit is LOW. DATA that nobody drives is anything in every cycle, or LOW (`--undriven low`): with an input filter, which counts what DATA does
-meanwhile, and with a cable so long that the receiver listens before the encoder drives, only the second is proved. Outside are requests, a clock that goes on, `phase = \"tracked\"`
-(an average over edges, which depend on the position), and cards without start values. `--out DIR` leaves a run that breaks as waveform and drawing.
+meanwhile, and with a cable so long that the receiver listens before the encoder drives, only the second is proved. Edges that come where they are expected leave a tracked phase (*edges* in the
+table) where it is, whichever bits have one; what jitter and a delay that changes do to it is outside, as are requests, a clock that goes on, and cards without start values. `--out DIR` leaves a run that breaks as waveform and drawing.
 
 | bits | command | additional data | cycles a bit | delay, one way | undriven DATA | phase from | first, other frames, cycles | bits at rest with a level, free | phases | time | |
 |---|---|---|---|---|---|---|---|---|---|---|---|

@@ -4,7 +4,7 @@ use super::run;
 use crate::passed::once_for_this_core;
 use crate::tools::third;
 use endat_gen::campaign::budget;
-use endat_gen::campaign::card::CardUpsets;
+use endat_gen::campaign::card::{CardSubject, CardUpsets};
 use endat_gen::campaign::part::Part;
 use endat_sim::campaign::port::Port;
 use endat_sim::campaign::upsets::{Draw, Upsets};
@@ -16,6 +16,8 @@ use std::path::Path;
 /// Where the results of the whole campaigns are, and the page that shows them.
 const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/campaigns/results");
 const CAMPAIGNS: [&str; 4] = ["upsets", "faults", "garbage", "accept"];
+/// Files that the page is made of.
+const FILES: [&str; 5] = ["upsets", "upsets_safety", "faults", "garbage", "accept"];
 const PAGE: &str = include_str!("../../docs/reliability.md");
 
 fn done(folder: &Path, arguments: &[&str], out: &str) -> Vec<u8> {
@@ -160,8 +162,9 @@ fn a_flip_that_must_be_seen_is_seen() {
 }
 
 /// What became of upsets of these registers of the card, in one run: what it takes is the card's simulation, whatever is upset in it.
-fn card(places: &[&str], moments: u64) -> Tally {
-    let campaign = CardUpsets::new(Draw::Grid { moments }, 1, &places.join(",")).unwrap();
+fn card(subject: CardSubject, places: &[&str], moments: u64) -> Tally {
+    let only = places.join(",");
+    let campaign = CardUpsets::new(subject, Draw::Grid { moments }, 1, &only).unwrap();
     let tally = run_shard(&campaign, Shard::WHOLE, 0, |_| {});
     assert_eq!(tally.count(budget::is_case), count(&campaign));
     for only in places {
@@ -179,7 +182,7 @@ fn upsets_of_the_card_that_must_be_seen_are_seen() {
         "core.timebase.cycles",
         "core.registers_0.held_1",
     );
-    let tally = card(&[rings[0], rings[1], time, held], 1);
+    let tally = card(CardSubject::Plain, &[rings[0], rings[1], time, held], 1);
     let of =
         |only: &str, class: &str| tally.count(|r| r.place.starts_with(only) && r.class == class);
     // Nothing goes out with them, and the host writes them again.
@@ -191,6 +194,21 @@ fn upsets_of_the_card_that_must_be_seen_are_seen() {
     // Either side of a bit: the stream's CRC, the position's own.
     assert_eq!(of(held, "silent"), 0, "{tally:?}");
     assert!(of(held, "detected") > 0, "{tally:?}");
+}
+
+/// The second controller reads, and refuses what is not of this card, trigger and moment. Catches one that is never asked, that takes
+/// what does not fit, or that refuses what is right: then a case without a flip would be told, which the campaign itself refuses.
+#[test]
+fn the_second_controller_of_a_card_is_told_of_upsets_on_its_way() {
+    once_for_this_core!("gen/campaign", "campaigns/results");
+    let places = ["core.second_0.", "core.port_1.channel_0.second_0.bits"];
+    let tally = card(CardSubject::Safety, &places, 1);
+    let of =
+        |only: &str, class: &str| tally.count(|r| r.place.starts_with(only) && r.class == class);
+    for (only, least) in [(places[0], 100), (places[1], 1)] {
+        assert!(of(only, "detected") >= least, "{only}: {tally:?}");
+        assert_eq!(of(only, "silent"), 0, "{only}: {tally:?}");
+    }
 }
 
 /// Found by the campaign: a byte of an answer that was lost inside, a level that nobody wrote again, a frame without an end, and a service
@@ -207,7 +225,7 @@ fn neither_the_link_nor_a_slower_clock_nor_a_service_stands_for_ever() {
         service,
     ];
     let places: Vec<&str> = third(&places, PAGE.len()).copied().collect();
-    let tally = card(&places, 13);
+    let tally = card(CardSubject::Plain, &places, 13);
     // A request that runs with a clock far too slow is another matter.
     let hangs =
         tally.count(|r| r.class == "hang" && (r.kind != "request" || r.place.starts_with(service)));
@@ -232,7 +250,7 @@ fn committed(campaign: &str) -> Part {
 
 #[test]
 fn the_page_is_what_the_results_say() {
-    let files = CAMPAIGNS.map(|c| format!("{RESULTS}/{c}.csv"));
+    let files = FILES.map(|c| format!("{RESULTS}/{c}.csv"));
     let mut arguments = vec!["campaign", "page"];
     arguments.extend(files.iter().map(String::as_str));
     let outcome = run(&arguments);
@@ -275,7 +293,7 @@ fn the_results_are_those_of_this_core() {
 /// The columns that DuckDB and pandas read have one type each: text, and whole numbers.
 #[test]
 fn results_are_plain_tables() {
-    for campaign in CAMPAIGNS {
+    for campaign in FILES {
         let text = fs::read_to_string(format!("{RESULTS}/{campaign}.csv")).unwrap();
         let mut lines = text.lines();
         let heading = "campaign,version,plan,cases,part,subject,kind,place,class,count";

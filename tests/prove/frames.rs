@@ -18,6 +18,13 @@ const SMALL: FrameCase = FrameCase {
     ..PLAIN
 };
 
+/// Phase from the mean over all edges.
+const TRACKED: FrameCase = FrameCase {
+    period_cycles: 8,
+    parts: "[line]\nparts = [\"alignment\"]\nphase = \"tracked\"\n",
+    ..SMALL
+};
+
 /// A check that the blocks decide, and who proves their frames.
 fn seen(what: &str) -> Check {
     Check::of_core(what, file!()).source("gen/prove")
@@ -28,7 +35,7 @@ fn has_tools() -> bool {
 }
 
 /// Every position, from power-up on: both commands, the widest, an odd period, both additional data,
-/// both edges, an input filter, and once all phases of the microsecond.
+/// both edges, a phase from the mean over edges, an input filter, and once all phases of the microsecond.
 #[test]
 fn what_the_encoder_sends_is_published() {
     if !has_tools() {
@@ -56,6 +63,7 @@ fn what_the_encoder_sends_is_published() {
             parts: "[line]\nparts = [\"alignment\", \"double_edge\"]\nphase = \"frame\"\n",
             ..SMALL
         },
+        TRACKED,
         FrameCase {
             period_cycles: 8,
             endat: "filter_ns = 250\n",
@@ -185,4 +193,22 @@ fn refuse_all(cases: &[(&str, &str, &str, &str)]) {
         "count_next = count + 16'd1 + {15'd0, held[5]}",
     );
     assert!(report.broken.is_none(), "{report}");
+}
+
+/// A tracked phase that an edge moves from where it belongs is refused, and be it by a 4096th of a cycle; whether any position is lost by
+/// that is not known: it takes more frames than are looked at.
+#[test]
+fn a_phase_that_edges_move_is_refused() {
+    if !has_tools() {
+        return;
+    }
+    seen("frames of a phase that drifts").unless_passed(|| {
+        for (from, to) in [
+            ("place_next = place - ~step;", "place_next = place - step;"),
+            ("distance = by + moved_by;", "distance = by + moved_by + 8'd4;"),
+        ] {
+            let report = broken(&TRACKED, "phase_tracker", from, to);
+            assert!(report.broken.is_some(), "{to}: {report}");
+        }
+    });
 }

@@ -27,7 +27,7 @@ const FORGET: u64 = CYCLES_PER_US * (TIMEOUT_US + TIMEOUT_US / 10);
 /// A line that is never quiet is given up after this.
 const SETTLE_MAX: u64 = 10 * FORGET;
 /// From a trigger until both results and their set are there.
-const FRAME: u64 = 1_200;
+pub const FRAME: u64 = 1_200;
 /// Nothing happens.
 const IDLE: u64 = 1_500;
 /// How often a read is tried.
@@ -148,6 +148,10 @@ impl Host {
                 Verdict::Reopen => {
                     self.open().await;
                     self.tell(What::Reopened).await;
+                }
+                Verdict::Rest => {
+                    self.tell(What::Slow).await;
+                    self.line.until(self.line.now() + REFUSED).await;
                 }
                 Verdict::End => break,
                 Verdict::GiveUp => return,

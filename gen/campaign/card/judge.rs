@@ -1,5 +1,6 @@
 //! What became of a flip in a card, from what its host has seen and what the encoders have sent.
 
+use super::second::Controller;
 use super::told::{Round, Seen, Verdict, What};
 use super::CHANNELS;
 use endat_driver::Reading;
@@ -25,6 +26,8 @@ pub struct Shot {
 pub struct Noted {
     /// Positions of each channel.
     pub shots: [Vec<Shot>; CHANNELS],
+    /// Answers that the second controller has read.
+    pub answers: Vec<Vec<u8>>,
     /// They complain of a wrong number of clock pulses, or of something else.
     pub pulses: bool,
     /// See `pulses`.
@@ -53,9 +56,11 @@ pub struct Judge {
     /// From the falling edge to the time stamp, of results and of sets.
     result_after: [u32; CHANNELS],
     set_after: u32,
+    second: Controller,
     triggers: u32,
     good_in_row: u32,
     is_reopened: bool,
+    has_rested: bool,
     is_ever_told: bool,
     /// What the encoders have noted since the last results.
     pending: Noted,
@@ -83,6 +88,7 @@ impl Judge {
             result_after: self.result_after,
             set_after: self.set_after,
             pending: std::mem::take(&mut self.pending),
+            second: std::mem::take(&mut self.second),
             ..Self::default()
         };
         self.shots
@@ -129,6 +135,7 @@ impl Judge {
         for (all, new) in all.shots.iter_mut().zip(noted.shots) {
             all.extend(new);
         }
+        all.answers.extend(noted.answers);
         all.pulses |= noted.pulses;
         all.rules |= noted.rules;
         all
@@ -162,6 +169,17 @@ impl Judge {
                 }
             }
             None => views.push(View::Told),
+        }
+        if self.second.has_begun() && noted.answers.is_empty() {
+            views.push(View::Told);
+        }
+        for answer in &noted.answers {
+            let results = self.second.take(answer).into_iter().zip(&noted.shots);
+            views.extend(results.map(|(reading, new)| match reading {
+                None => View::Told,
+                Some(reading) if new.iter().any(|s| s.position == reading.position) => View::Good,
+                Some(_) => View::Wrong,
+            }));
         }
         for set in &round.sets {
             self.set(set, before, &mut views);
@@ -219,6 +237,11 @@ impl Judge {
         let is_dead = round.results.is_none() || self.triggers >= REOPEN_AFTER;
         match self.is_reopened {
             false if is_dead && self.good_in_row == 0 => Verdict::Reopen,
+            true if self.triggers == TRIGGERS_MAX && !self.has_rested => {
+                self.has_rested = true;
+                (self.triggers, self.good_in_row) = (0, 0);
+                Verdict::Rest
+            }
             true if self.triggers == TRIGGERS_MAX => {
                 self.hang();
                 Verdict::GiveUp

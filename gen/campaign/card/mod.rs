@@ -1,9 +1,12 @@
 //! Upsets of a whole card: two channels with requests, a stream, the link, and a host beside them that knows the card from its pages only.
-//! The flip-flops of the two channels themselves are those of the ports' campaign, and are left to it.
+//!
+//! Of the [plain](CardSubject::Plain) card the flip-flops of the two channels are those of the ports' campaign, and are left to it; of the
+//! card with [every monitor](CardSubject::Safety) all are inverted, and a second controller reads at the second interface.
 
 mod host;
 mod judge;
 mod line;
+mod second;
 mod told;
 
 use crate::config;
@@ -21,18 +24,54 @@ use endat_sim::campaign::{digest, Campaign, Row, Tally, ABORT_US};
 use endat_sim::encoder::{AnswerKind, Encoder, EncoderConfig};
 use endat_sim::line::LineConfig;
 use endat_sim::{Time, NS, US};
-use host::{BIT_CYCLES, TIMEOUT_US};
+use host::{BIT_CYCLES, FRAME, TIMEOUT_US};
 use judge::{Judge, Noted, Shot};
 use line::Host;
 use rtl_design::elaborate::{elaborate, Design};
 use rtl_design::engine::{Keep, LaneWords, Lanes};
 use rust_hdl::prelude::Block;
+use second::Masters;
 use std::ops::Range;
 use std::sync::OnceLock;
 use told::{Kind, Known, Seen, Verdict, What};
 
-/// Its name in tables.
-pub const SUBJECT: &str = "card";
+/// A card whose flip-flops are inverted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CardSubject {
+    /// Without monitors.
+    Plain,
+    /// With all that `[safety]` has, and a second controller.
+    Safety,
+}
+
+impl CardSubject {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Plain, Self::Safety];
+
+    /// Its name in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "card",
+            Self::Safety => "card_safety",
+        }
+    }
+
+    /// That with this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|subject| subject.name() == name)
+    }
+
+    fn has_monitors(self) -> bool {
+        self == Self::Safety
+    }
+}
+
+/// The part of a register's name behind the one of its channel, if it is in one.
+pub fn in_channel(name: &str) -> Option<&str> {
+    let (_, behind) = name.split_once(".channel_0.")?;
+    Some(behind)
+}
+
 /// Channels of the card.
 const CHANNELS: usize = 2;
 /// Configuration words of the card, and of each channel.
@@ -40,6 +79,10 @@ const CONFIG_WORDS: usize = RING_WORDS;
 /// Settings of a service that decide what becomes of positions.
 const SERVICE_WORDS: [u8; 3] = [word::FORCE, word::LIMITS, word::CONTINUOUS];
 const CONFIGURATION: &str = include_str!("card.toml");
+/// What the card with every monitor has besides.
+const MONITORS: &str = "[safety]\nparts = [\"recovery_counter\", \"second_interface\", \"second_receiver\", \"error_test\"]\n";
+/// Width of the encoders' positions.
+const POSITION_BITS: u32 = 25;
 const SYSTEM_HZ: u64 = 32_000_000;
 const CYCLES_PER_US: u64 = SYSTEM_HZ / 1_000_000;
 const CYCLE: Time = US / CYCLES_PER_US;
@@ -58,8 +101,10 @@ const SLOW: Time = 500 * NS;
 const LONGEST: u64 = 8_000_000;
 
 /// The card's configuration.
-fn configuration() -> Result<CardConfig, GenError> {
-    let project = config::parse("card.toml", CONFIGURATION).map_err(|all| {
+fn configuration(subject: CardSubject) -> Result<CardConfig, GenError> {
+    let monitors = if subject.has_monitors() { MONITORS } else { "" };
+    let text = format!("{CONFIGURATION}{monitors}");
+    let project = config::parse("card.toml", &text).map_err(|all| {
         let all: Vec<String> = all.iter().map(|d| d.to_string()).collect();
         GenError::input(all.join("; "))
     })?;
@@ -92,6 +137,8 @@ fn design(card: &CardConfig) -> Result<Design, GenError> {
 struct Bench {
     bench: LaneBench,
     uart: LaneUart,
+    /// Of a card with a second interface.
+    second: Option<Masters>,
     /// Lanes whose trigger pin is HIGH, until when.
     pulses: Vec<(u64, usize)>,
     /// What was taken of the encoders' logs.
@@ -100,9 +147,9 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(engine: Lanes) -> Self {
+    fn new(engine: Lanes, subject: CardSubject) -> Self {
         let port = |channel: usize| {
-            let mut encoder = EncoderConfig::endat22(25).seed(channel as u64 + 1);
+            let mut encoder = EncoderConfig::endat22(POSITION_BITS).seed(channel as u64 + 1);
             encoder.tm = 1_500 * NS..=1_500 * NS;
             encoder.tac = 0..=0;
             encoder.write_time = 0..=0;
@@ -112,9 +159,11 @@ impl Bench {
         };
         let mut bench = LaneBench::new(engine, SYSTEM_HZ, (0..CHANNELS).map(port).collect());
         let uart = LaneUart::new(&mut bench, BIT_CYCLES);
+        let second = (subject.has_monitors()).then(|| Masters::new(&mut bench));
         Self {
             bench,
             uart,
+            second,
             pulses: vec![],
             frames: vec![[0; CHANNELS]; LANES],
             violations: vec![[0; CHANNELS]; LANES],
@@ -130,7 +179,11 @@ impl Bench {
         self.uart.send(lane, &bytes);
         if trigger {
             self.bench.set("trigger_i", lane, 1);
-            self.pulses.push((self.cycle() + PULSE, lane));
+            let now = self.cycle();
+            self.pulses.push((now + PULSE, lane));
+            if let Some(second) = &mut self.second {
+                second.ask(lane, now + FRAME);
+            }
         }
     }
 
@@ -140,12 +193,18 @@ impl Bench {
             let (_, lane) = self.pulses.swap_remove(index);
             self.bench.set("trigger_i", lane, 0);
         }
+        if let Some(second) = &mut self.second {
+            second.drive(&mut self.bench);
+        }
         self.uart.tick(&mut self.bench);
     }
 
     /// What the encoders of a lane have noted since they were asked.
     fn noted(&mut self, lane: usize) -> Noted {
         let mut noted = Noted::default();
+        if let Some(second) = &mut self.second {
+            noted.answers = second.take(lane);
+        }
         for channel in 0..CHANNELS {
             let encoder = self.bench.link(channel, lane).encoder();
             let frames = &mut self.frames[lane][channel];
@@ -283,10 +342,10 @@ struct Ready {
 }
 
 impl Ready {
-    fn new(pushes: bool, engine: Lanes, card: &CardConfig) -> Self {
+    fn new(pushes: bool, engine: Lanes, card: &CardConfig, subject: CardSubject) -> Self {
         let blocks = std::iter::once(None).chain((0..CHANNELS).map(Some));
         let words: Vec<_> = blocks.map(|block| config_words(card, block)).collect();
-        let mut bench = Bench::new(engine);
+        let mut bench = Bench::new(engine, subject);
         (0..CYCLES_PER_US * (ABORT_US + 10)).for_each(|_| bench.tick());
         let lane = |_| {
             let words = words.clone();
@@ -354,6 +413,7 @@ struct Group {
 
 /// The campaign.
 pub struct CardUpsets {
+    subject: CardSubject,
     card: CardConfig,
     engine: Lanes,
     /// Without and with a stream that is pushed.
@@ -365,19 +425,15 @@ pub struct CardUpsets {
     digest: u64,
 }
 
-/// Whether a register is one of a channel that the ports' campaign has.
-fn is_of_port(name: &str) -> bool {
-    name.contains(".channel_0.")
-}
-
 impl CardUpsets {
     /// Upsets of registers [that are asked for](is_asked).
-    pub fn new(draw: Draw, seed: u64, only: &str) -> Result<Self, GenError> {
-        let card = configuration()?;
+    pub fn new(subject: CardSubject, draw: Draw, seed: u64, only: &str) -> Result<Self, GenError> {
+        let card = configuration(subject)?;
         let design = design(&card)?;
         let engine = Lanes::new(&design, Keep::Registers, LaneWords::Two)
             .map_err(|e| GenError::fault("campaign", &e))?;
-        let chosen = |name: &str| is_asked(name, only) && !is_of_port(name);
+        let is_of_card = |name: &str| subject.has_monitors() || in_channel(name).is_none();
+        let chosen = |name: &str| is_asked(name, only) && is_of_card(name);
         let flops = Flops::filtered(&engine, chosen);
         let count = Kind::ALL.len() as u64;
         let group = |(index, kind): (usize, Kind)| Group {
@@ -393,6 +449,7 @@ impl CardUpsets {
         Ok(Self {
             groups: Kind::ALL.into_iter().enumerate().map(group).collect(),
             digest: digest(&design),
+            subject,
             card,
             engine,
             ready: [OnceLock::new(), OnceLock::new()],
@@ -417,9 +474,9 @@ impl Campaign for CardUpsets {
         let kind = group.kind;
         let pushes = kind == Kind::Stream;
         let ready = self.ready[usize::from(pushes)]
-            .get_or_init(|| Ready::new(pushes, self.engine.clone(), &self.card));
+            .get_or_init(|| Ready::new(pushes, self.engine.clone(), &self.card, self.subject));
         let (begun, span) = *group.window.get_or_init(|| ready.window(kind));
-        let label = format!("{SUBJECT} {}", kind.name());
+        let label = format!("{} {}", self.subject.name(), kind.name());
         let case = |number| self.flops.case(self.draw, self.seed, &label, span, number);
         let drawn: Vec<(usize, u64)> = cases.map(case).collect();
         let flip = |(lane, (index, cycle)): (usize, &(usize, u64))| {
@@ -433,7 +490,7 @@ impl Campaign for CardUpsets {
             let judge = lane.judge;
             let mut add = |class: &str| {
                 let row = Row {
-                    subject: SUBJECT.into(),
+                    subject: self.subject.name().into(),
                     kind: kind.name().into(),
                     place: self.flops.names[*index].clone(),
                     class: class.into(),

@@ -109,6 +109,8 @@ pub enum Verdict {
     Again,
     /// Opens the connection anew.
     Reopen,
+    /// Leaves the card alone for as long as a command with a parameter may take.
+    Rest,
     /// All is well: asks for the last things.
     End,
     /// Gives up.

@@ -1,7 +1,7 @@
 //! Campaigns that count what becomes of each case: parts, tables, budgets.
 
 use super::{fault, mutants, CampaignArgs, Name};
-use crate::campaign::card::{self, CardUpsets};
+use crate::campaign::card::{CardSubject, CardUpsets};
 use crate::campaign::configurations::Configurations;
 use crate::campaign::mutants::{page as page_of_mutants, table as table_of_mutants, NAME};
 use crate::campaign::part::{merge, shard, Identity, Part};
@@ -159,7 +159,7 @@ fn boxed<C: Campaign + 'static>(made: Result<C, CampaignError>) -> Made {
 struct Subjects {
     ports: Vec<Port>,
     is_t_format: bool,
-    is_card: bool,
+    card: Option<CardSubject>,
 }
 
 /// Of the random cases, the T-format port and the card have an eighth each, if others are there.
@@ -170,9 +170,9 @@ fn upsets(subjects: &Subjects, draw: Draw, seed: u64, only: &str) -> Made {
     let Subjects {
         ports,
         is_t_format,
-        is_card,
+        card,
     } = subjects;
-    let flags = [!ports.is_empty(), *is_t_format, *is_card];
+    let flags = [!ports.is_empty(), *is_t_format, card.is_some()];
     let count = flags.into_iter().filter(|is_there| *is_there).count() as u64;
     let share = |cases: u64, index: usize| match (count, flags) {
         (1, _) => cases,
@@ -193,8 +193,8 @@ fn upsets(subjects: &Subjects, draw: Draw, seed: u64, only: &str) -> Made {
     if *is_t_format {
         joined.push(boxed(TFormatUpsets::new(drawn(1), seed, only))?);
     }
-    if *is_card {
-        joined.push(Box::new(CardUpsets::new(drawn(2), seed, only)?));
+    if let Some(card) = card {
+        joined.push(Box::new(CardUpsets::new(*card, drawn(2), seed, only)?));
     }
     Ok(Box::new(Joined(joined)))
 }
@@ -203,16 +203,17 @@ fn upsets(subjects: &Subjects, draw: Draw, seed: u64, only: &str) -> Made {
 fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, Made), GenError> {
     let chosen = arguments.subject.as_deref();
     let is_t_format = chosen.is_none_or(|name| name == t_format::SUBJECT);
-    let is_card = chosen.is_none_or(|name| name == card::SUBJECT);
+    let card = chosen.map_or(Some(CardSubject::Plain), CardSubject::named);
     let ports: Vec<Port> = match chosen {
         Some(name) => Port::named().filter(|port| port.name() == name).collect(),
         None => Port::ALL.to_vec(),
     };
     let is_upsets = matches!(arguments.name, Name::Upsets);
-    if ports.is_empty() && !(is_upsets && (is_t_format || is_card)) {
+    if ports.is_empty() && !(is_upsets && (is_t_format || card.is_some())) {
         let mut names: Vec<&str> = Port::named().map(Port::name).collect();
         if is_upsets {
-            names.extend([t_format::SUBJECT, card::SUBJECT]);
+            names.push(t_format::SUBJECT);
+            names.extend(CardSubject::ALL.map(CardSubject::name));
         }
         return Err(GenError::input(format!(
             "--subject = {}: is no subject of this campaign; take one of {}",
@@ -267,7 +268,7 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
             let subjects = Subjects {
                 ports,
                 is_t_format,
-                is_card,
+                card,
             };
             let of = |only: &str| {
                 let made = upsets(&subjects, draw, seed, only)?;

@@ -75,10 +75,13 @@ const fn low(case: FrameCase) -> FrameCase {
 const FIXED: &str = "[line]\nparts = [\"alignment\"]\nphase = \"fixed\"\nfixed_delay_ns = 1500\n";
 const FRAME: &str = "[line]\nparts = [\"alignment\"]\nphase = \"frame\"\n";
 const DOUBLE: &str = "[line]\nparts = [\"alignment\", \"double_edge\"]\nphase = \"frame\"\n";
+const TRACKED: &str = "[line]\nparts = [\"alignment\"]\nphase = \"tracked\"\n";
+const TRACKED_DOUBLE: &str =
+    "[line]\nparts = [\"alignment\", \"double_edge\"]\nphase = \"tracked\"\n";
 const INFO: &str = "[service]\nparts = [\"requests\"]\ninfos = [0x4C]\n";
 const BOTH: &str = "[service]\nparts = [\"requests\"]\ninfos = [0x4C, 0x59]\n";
 
-const CASES: [FrameCase; 17] = [
+const CASES: [FrameCase; 21] = [
     PLAIN,
     frames(1, "000111", 4, 0, 7),
     frames(1, "111000", 8, 3, 70),
@@ -102,6 +105,10 @@ const CASES: [FrameCase; 17] = [
     with(FIXED, frames(25, "111000", 8, 4, 90)),
     with(FRAME, frames(37, "111000", 8, 4, 90)),
     with(DOUBLE, frames(25, "111000", 8, 4, 90)),
+    with(TRACKED, frames(13, "111000", 8, 4, 90)),
+    with(TRACKED, frames(37, "111000", 5, 3, 70)),
+    with(TRACKED, frames(48, "000111", 4, 2, 40)),
+    with(TRACKED_DOUBLE, frames(25, "111000", 4, 2, 40)),
 ];
 
 /// Proves the frames of a case.

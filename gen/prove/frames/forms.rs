@@ -53,6 +53,17 @@ enum Unknown {
     Free,
     /// The product of two functions, which would have had too many terms.
     Product(Form, Form),
+    /// A sum of older ones, which one of these has been written with since: see [`Forms::name`].
+    Sum(Form),
+}
+
+/// An unknown, and the function that stands for it from now on.
+#[derive(Clone, Debug)]
+pub(super) struct Renamed {
+    unknown: u32,
+    by: Form,
+    /// What each sum has become.
+    done: HashMap<u32, Form>,
 }
 
 /// Products with more terms become an unknown.
@@ -138,8 +149,7 @@ impl Forms {
 
     fn unknown(&mut self, what: Unknown) -> u32 {
         self.unknowns.push(what);
-        let term = self.terms.number(vec![self.unknowns.len() as u32 - 1]);
-        self.sums.number(vec![term])
+        self.alone(self.unknowns.len() as u32 - 1).sum()
     }
 
     fn add(&mut self, a: u32, b: u32) -> u32 {
@@ -254,6 +264,62 @@ impl Forms {
         with.next() == Some(term) && with.next().is_none()
     }
 
+    /// Makes an unknown of a sum of several: the oldest one of these is the sum of it and the others from now on, wherever it is.
+    /// None: it is no such sum.
+    ///
+    /// The edge between two CRC bits is a product of long sums otherwise, and what comes of it is no longer told to be the same.
+    pub fn name(&mut self, form: Form) -> Option<Renamed> {
+        let terms = self.sums.list(form.sum());
+        let unknowns: Option<Vec<u32>> = terms
+            .iter()
+            .map(|term| match self.terms.list(*term) {
+                [unknown] => Some(*unknown),
+                _ => None,
+            })
+            .collect();
+        let unknowns = unknowns.filter(|unknowns| unknowns.len() > 1)?;
+        let is_free = |unknown: &u32| matches!(self.unknowns[*unknown as usize], Unknown::Free);
+        let oldest = unknowns.into_iter().filter(is_free).min()?;
+        let named = Form(self.unknown(Unknown::Sum(form)) << 1);
+        let alone = self.alone(oldest);
+        let others = self.xor(form, alone);
+        Some(Renamed {
+            unknown: oldest,
+            by: self.xor(named, others),
+            done: HashMap::new(),
+        })
+    }
+
+    /// A function as it is written after that.
+    pub fn renamed(&mut self, form: Form, renamed: &mut Renamed) -> Form {
+        if let Some(done) = renamed.done.get(&form.sum()) {
+            return done.inverted_if(form.is_inverted());
+        }
+        let has = |term: &u32| self.terms.list(*term).contains(&renamed.unknown);
+        let terms = self.sums.list(form.sum());
+        let (with, without): (Vec<u32>, Vec<u32>) = terms.iter().partition(|term| has(term));
+        let mut sum = Form(form.sum() << 1);
+        if !with.is_empty() {
+            sum = Form(self.sums.number(without) << 1);
+            for term in with {
+                let factors = self.terms.list(term).to_vec();
+                let mut product = renamed.by;
+                for factor in factors.into_iter().filter(|f| *f != renamed.unknown) {
+                    let factor = self.alone(factor);
+                    product = self.and(product, factor);
+                }
+                sum = self.xor(sum, product);
+            }
+        }
+        renamed.done.insert(form.sum(), sum);
+        sum.inverted_if(form.is_inverted())
+    }
+
+    fn alone(&mut self, unknown: u32) -> Form {
+        let term = self.terms.number(vec![unknown]);
+        Form(self.sums.number(vec![term]) << 1)
+    }
+
     /// 64 draws of all unknowns.
     pub fn sample(&self, seed: u64) -> Sample<'_> {
         let mut sample = Sample {
@@ -262,9 +328,10 @@ impl Forms {
         };
         let mut rng = Rng::new(seed);
         for unknown in &self.unknowns {
-            // The factors of a product are older than it is.
+            // What it is made of is older than it is.
             let levels = match unknown {
                 Unknown::Free => rng.next_u64(),
+                Unknown::Sum(form) => sample.levels(*form),
                 Unknown::Product(a, b) => sample.levels(*a) & sample.levels(*b),
             };
             sample.levels.push(levels);
@@ -344,6 +411,51 @@ mod tests {
                 assert_eq!(sample.levels(*net), level, "seed {seed}");
             }
         }
+    }
+
+    /// A function stays what it was when a sum becomes an unknown: products that have the one which is written anew, too, and sums
+    /// whose first unknown has been written anew before. The edge between two named sums is one between two unknowns.
+    #[test]
+    fn a_named_sum_changes_no_function() {
+        for seed in 0..50 {
+            let mut rng = Rng::new(seed);
+            let mut forms = Forms::new();
+            let unknowns: Vec<Form> = (0..24).map(|_| forms.free()).collect();
+            let mut any = |forms: &mut Forms| {
+                let bits = rng.next_u64();
+                let taken = unknowns.iter().enumerate();
+                let taken = taken.filter(|(index, _)| bits >> index & 1 == 1);
+                taken.fold(Form::LOW, |sum, (_, unknown)| forms.xor(sum, *unknown))
+            };
+            let mut named = [any(&mut forms), any(&mut forms), any(&mut forms)];
+            let mut live = unknowns.clone();
+            for _ in 0..40 {
+                let [a, b] = [any(&mut forms), any(&mut forms)];
+                live.push(forms.and(a, unknowns[3]));
+                live.push(forms.and(unknowns[0], unknowns[1]));
+                live.push(forms.or(a, b));
+            }
+            let before = live.clone();
+            for index in 0..named.len() {
+                let mut renamed = forms.name(named[index]).expect("a long sum");
+                for form in live.iter_mut().chain(&mut named) {
+                    *form = forms.renamed(*form, &mut renamed);
+                }
+                assert!(forms.name(named[index]).is_none(), "it is one unknown now");
+            }
+            let edge = forms.xor(named[0], named[1]);
+            let (both, once) = (forms.and(edge, named[0]), forms.and(named[0], !named[1]));
+            assert_eq!(both, once);
+            let sample = forms.sample(seed);
+            for (before, after) in before.iter().zip(&live) {
+                assert_eq!(sample.levels(*before), sample.levels(*after), "seed {seed}");
+            }
+        }
+        let mut forms = Forms::new();
+        let (a, b) = (forms.free(), forms.free());
+        let product = forms.and(a, b);
+        let with_product = forms.xor(a, product);
+        assert!(forms.name(a).is_none() && forms.name(with_product).is_none());
     }
 
     /// Two ways to add up a parity are one function, of any width; a wrong one is another.

@@ -96,15 +96,16 @@ impl Walk<'_> {
             };
             (0..24).map(bit).collect::<Vec<Form>>()
         });
+        self.drive("position_now", &position)?;
+        self.drive("info_1_now", &infos[0])?;
+        self.drive("info_2_now", &infos[1])?;
         for cycle in 0..limit {
-            self.drive("position_now", &position)?;
-            self.drive("info_1_now", &infos[0])?;
-            self.drive("info_2_now", &infos[1])?;
             let is_tick = (cycle + tick_phase) % ticks == ticks - 1;
             self.drive("tick_us", &[is_tick.into()])?;
             self.drive("trigger", &[Form::LOW])?;
             self.drive_anything()?;
             self.evaluate();
+            self.name_sent()?;
             if cycle == 0 {
                 self.relate()?;
             }
@@ -325,6 +326,17 @@ impl Walk<'_> {
             true => Err(format!("{}: no such net", text::WHOLE)),
             false => Ok(found),
         }
+    }
+
+    /// What the encoder sends is an unknown of its own, CRC bits, too.
+    fn name_sent(&mut self) -> Result<(), String> {
+        let sent = self.one("value")?;
+        if let Some(mut renamed) = self.forms.name(sent) {
+            for level in &mut self.levels {
+                *level = self.forms.renamed(*level, &mut renamed);
+            }
+        }
+        Ok(())
     }
 
     fn nets(&self, name: &str) -> Result<&[Net], String> {
