@@ -3,7 +3,9 @@
 use crate::error::GenError;
 use std::io;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// A program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,24 +148,63 @@ impl Ran {
 
 /// Starts a program in a folder and waits for its end.
 pub fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<Ran, GenError> {
-    start(Command::new(program).current_dir(folder).args(arguments)).map_err(|e| {
+    start(Command::new(program).current_dir(folder).args(arguments)).map_err(not_started(program))
+}
+
+fn not_started(program: &str) -> impl Fn(io::Error) -> GenError + '_ {
+    move |e| {
         let known = TOOLS.iter().find(|tool| tool.program == program);
         let remedy = known.map_or("install it".into(), |t| {
             format!("install it: `{}`", t.install)
         });
         GenError::input(format!("{program}: cannot be started: {e}; {remedy}"))
-    })
+    }
+}
+
+/// How often a program is looked at that may take too long.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// The same of a program that says little, and is stopped when it takes longer than that: none.
+pub fn run_within(
+    program: &str,
+    folder: &Path,
+    arguments: &[&str],
+    longest: Duration,
+) -> Result<Option<Ran>, GenError> {
+    let mut command = Command::new(program);
+    command.current_dir(folder).args(arguments);
+    let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let end = Instant::now() + longest;
+    let waited = (|| -> io::Result<Option<Ran>> {
+        let mut child = piped.stdin(Stdio::null()).spawn()?;
+        while child.try_wait()?.is_none() {
+            if Instant::now() > end {
+                child.kill()?;
+                child.wait()?;
+                return Ok(None);
+            }
+            thread::sleep(LOOK);
+        }
+        child.wait_with_output().map(|output| Some(ran(&output)))
+    })();
+    waited.map_err(not_started(program))
 }
 
 /// The same of a command that is made elsewhere; an error if it cannot be started.
 pub fn start(command: &mut Command) -> io::Result<Ran> {
-    let output = command.stdin(Stdio::null()).output()?;
+    command
+        .stdin(Stdio::null())
+        .output()
+        .map(|output| ran(&output))
+}
+
+fn ran(output: &Output) -> Ran {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    Ok(Ran {
+    Ran {
         is_good: output.status.success(),
         stdout: text(&output.stdout),
         stderr: text(&output.stderr),
-    })
+    }
 }
 
 /// What a program has said from a word on, all of it if the word is not there; short, and in one line.
@@ -199,6 +240,24 @@ pub fn version(tool: &Tool) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Catches a wait that never ends, and one that stops what would have come to its end.
+    #[test]
+    fn a_program_that_takes_too_long_is_stopped() {
+        let run = |seconds: &str, longest: u64| {
+            let longest = Duration::from_secs(longest);
+            run_within("sleep", Path::new("."), &[seconds], longest).unwrap()
+        };
+        let begun = Instant::now();
+        assert!(run("1000", 1).is_none() && begun.elapsed() < Duration::from_secs(500));
+        assert!(run("0.1", 500).is_some_and(|ran| ran.is_good));
+        let none = run_within("no_such_program", Path::new("."), &[], LOOK);
+        let said = none.err().unwrap().to_string();
+        assert!(
+            said.contains("no_such_program: cannot be started"),
+            "{said}"
+        );
+    }
 
     #[test]
     fn a_version_is_found_in_what_programs_say() {

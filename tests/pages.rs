@@ -149,6 +149,15 @@ fn the_sizes_are_those_of_the_area_table() {
         let [lut, ff] = area(subject, XC6S.name);
         page.cells(head, &[lut.to_string(), ff.to_string(), third(lut)]);
     }
+    let monitors = [
+        "recovery_counter",
+        "second_receiver",
+        "second_interface",
+        "second_record",
+    ];
+    let monitors = monitors.map(|subject| area(subject, XC6S.name));
+    let all = |kind: usize| monitors.map(|m| m[kind].to_string()).join("; ");
+    page.cells("| for a safe control", &[all(0), all(1)]);
     page.check();
 }
 

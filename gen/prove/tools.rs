@@ -72,7 +72,7 @@ pub(super) fn model(
     Err(not_read(&text))
 }
 
-fn not_read(text: &str) -> GenError {
+pub(super) fn not_read(text: &str) -> GenError {
     GenError::input(format!(
         "{YOSYS}: cannot read the Verilog: {}; is it as it was emitted, with its properties?",
         crate::tools::from(text, "ERROR")
@@ -127,12 +127,27 @@ pub(super) fn gates(
     top: &str,
     kept: &str,
 ) -> Result<String, GenError> {
+    let read = format!("-formal -noassert -DFORMAL {}", files.join(" "));
+    let flat = format!("setattr -set keep 1 w:*{kept}\nopt\nmemory_map");
+    mapped(folder, &read, top, &flat)
+}
+
+/// The same of a module as it is synthesised, without its memories: what is read from one may be anything.
+pub(super) fn gates_without_memories(
+    folder: &Path,
+    files: &[&str],
+    top: &str,
+) -> Result<String, GenError> {
+    let flat = "opt\nmemory -nomap\ndelete t:$mem*";
+    mapped(folder, &files.join(" "), top, flat)
+}
+
+/// Gates of what has been read; `flat` is what becomes of it when it has become flat.
+fn mapped(folder: &Path, read: &str, top: &str, flat: &str) -> Result<String, GenError> {
     let file = "gates.json";
     let script = format!(
-        "read_verilog -formal -noassert -sv -DFORMAL {}\nhierarchy -top {top}\nproc\nflatten\ndelete t:$scopeinfo\n\
-         setattr -set keep 1 w:*{kept}\nopt\nmemory_map\nopt\ndffunmap\ntechmap\nopt\ndffunmap\nsimplemap\nopt_clean\n\
-         write_json {file}\n",
-        files.join(" ")
+        "read_verilog -sv {read}\nhierarchy -top {top}\nproc\nflatten\ndelete t:$scopeinfo\n\
+         {flat}\nopt\ndffunmap\ntechmap\nopt\ndffunmap\nsimplemap\nopt_clean\nwrite_json {file}\n",
     );
     let remedy = crate::scratch::REMEDY;
     crate::artifact::write(folder, &[Artifact::new("gates.ys", script)], remedy)?;

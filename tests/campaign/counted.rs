@@ -201,7 +201,10 @@ fn upsets_of_the_card_that_must_be_seen_are_seen() {
 #[test]
 fn the_second_controller_of_a_card_is_told_of_upsets_on_its_way() {
     once_for_this_core!("gen/campaign", "campaigns/results");
-    let places = ["core.second_0.", "core.port_1.channel_0.second_0.bits"];
+    let places = [
+        "core.second_0.",
+        "core.port_1.channel_0.second_0.receiver.crc_bits",
+    ];
     let tally = card(CardSubject::Safety, &places, 1);
     let of =
         |only: &str, class: &str| tally.count(|r| r.place.starts_with(only) && r.class == class);

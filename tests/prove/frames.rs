@@ -205,7 +205,10 @@ fn a_phase_that_edges_move_is_refused() {
     seen("frames of a phase that drifts").unless_passed(|| {
         for (from, to) in [
             ("place_next = place - ~step;", "place_next = place - step;"),
-            ("distance = by + moved_by;", "distance = by + moved_by + 8'd4;"),
+            (
+                "distance = by + moved_by;",
+                "distance = by + moved_by + 8'd4;",
+            ),
         ] {
             let report = broken(&TRACKED, "phase_tracker", from, to);
             assert!(report.broken.is_some(), "{to}: {report}");

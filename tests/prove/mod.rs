@@ -8,7 +8,7 @@ use crate::program::{bad, good, run, Dir};
 use crate::tools;
 use crate::verilog::mutations::Mutation;
 use endat_gen::config::{load_any_preset, parse, Configuration, PRESETS, RECEIVER_PRESETS};
-use endat_gen::prove::{prove, Report, Subject, Verdict};
+use endat_gen::prove::{prove, reset, Report, Subject, Verdict};
 use mutations::MUTATIONS;
 use rtl_design::elaborate::properties::{properties, Begins};
 use rtl_design::elaborate::Design;
@@ -103,6 +103,7 @@ fn all_are_proved(subject: &Subject) {
     let report = proved(subject);
     assert!(report.is_good(), "{report}");
     let rows = report.parts.iter().flat_map(|p| &p.rows);
+    let rows = rows.filter(|r| r.name != reset::NAME);
     let rows: BTreeSet<&str> = rows.map(|r| r.name.as_str()).collect();
     let properties = all(&subject.design);
     let there = properties.iter().map(|(_, p)| p.name.as_str());
@@ -260,6 +261,39 @@ fn a_user_who_changes_a_line_sees_a_proof_fail() {
     std::fs::write(&file, "module nothing; endmodule\n").unwrap();
     let told = bad(&["prove", "--config", &config, "--rtl", &rtl], 2);
     assert!(told.contains("cannot read the Verilog"), "{told}");
+}
+
+/// A register that a reset leaves as it was, or that takes what comes in meanwhile, is told.
+#[test]
+fn a_register_that_a_reset_forgets_is_told() {
+    if !tools::require_all(&TOOLS, "what a reset leaves") {
+        return;
+    }
+    let subject = subject(BARE);
+    let cases = [
+        ("half_period", "            count <= 10'd2;\n", ""),
+        ("snapshot", "strobe <= 1'b0;", "strobe <= held[3];"),
+        ("channel", "clk_pin <= 1'b1;", "clk_pin <= trigger;"),
+    ];
+    seen("what a reset leaves", [&subject]).unless_passed(|| {
+        let is_told = |subject: &Subject| {
+            let parts = proved(subject).parts;
+            let mut rows = parts.iter().flat_map(|p| &p.rows);
+            let told = Verdict::Violated { after_cycles: 1 };
+            rows.any(|r| r.name == reset::NAME && r.verdict == told)
+        };
+        for (block, from, to) in cases {
+            let mut broken = subject.clone();
+            let file = &mut broken.files[file_of(&subject, block).unwrap()];
+            assert_eq!(file.text.matches(from).count(), 1, "{block}: {from}");
+            file.text = file.text.replace(from, to);
+            let module = file.path.trim_end_matches(".v").to_owned();
+            broken.narrow(&module);
+            assert!(is_told(&broken), "{block}: {from}");
+            broken.files = subject.files.clone();
+            assert!(!is_told(&broken), "{block}");
+        }
+    });
 }
 
 /// The page tells the properties that there are, in their words; its times are of one run (`prove --page`).

@@ -7,15 +7,15 @@ mod host;
 mod judge;
 mod line;
 mod second;
+mod subject;
 mod told;
 
-use crate::config;
+pub use subject::{in_channel, CardSubject};
+
 use crate::error::GenError;
 use endat_hdl::card::config_ring::RING_WORDS;
-use endat_hdl::card::{service_times, Card};
 use endat_hdl::config::CardConfig;
 use endat_hdl::endat::service::map::word;
-use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::regs::config_words;
 use endat_sim::bench::{LaneBench, LaneUart, Link, PinNames};
 use endat_sim::campaign::port::{is_count, Class, Mark};
@@ -24,53 +24,15 @@ use endat_sim::campaign::{digest, Campaign, Row, Tally, ABORT_US};
 use endat_sim::encoder::{AnswerKind, Encoder, EncoderConfig};
 use endat_sim::line::LineConfig;
 use endat_sim::{Time, NS, US};
-use host::{BIT_CYCLES, FRAME, TIMEOUT_US};
+use host::{BIT_CYCLES, FRAME};
 use judge::{Judge, Noted, Shot};
 use line::Host;
-use rtl_design::elaborate::{elaborate, Design};
 use rtl_design::engine::{Keep, LaneWords, Lanes};
-use rust_hdl::prelude::Block;
 use second::Masters;
 use std::ops::Range;
 use std::sync::OnceLock;
+use subject::{configuration, design};
 use told::{Kind, Known, Seen, Verdict, What};
-
-/// A card whose flip-flops are inverted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CardSubject {
-    /// Without monitors.
-    Plain,
-    /// With all that `[safety]` has, and a second controller.
-    Safety,
-}
-
-impl CardSubject {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Plain, Self::Safety];
-
-    /// Its name in tables.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Plain => "card",
-            Self::Safety => "card_safety",
-        }
-    }
-
-    /// That with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|subject| subject.name() == name)
-    }
-
-    fn has_monitors(self) -> bool {
-        self == Self::Safety
-    }
-}
-
-/// The part of a register's name behind the one of its channel, if it is in one.
-pub fn in_channel(name: &str) -> Option<&str> {
-    let (_, behind) = name.split_once(".channel_0.")?;
-    Some(behind)
-}
 
 /// Channels of the card.
 const CHANNELS: usize = 2;
@@ -78,59 +40,18 @@ const CHANNELS: usize = 2;
 const CONFIG_WORDS: usize = RING_WORDS;
 /// Settings of a service that decide what becomes of positions.
 const SERVICE_WORDS: [u8; 3] = [word::FORCE, word::LIMITS, word::CONTINUOUS];
-const CONFIGURATION: &str = include_str!("card.toml");
-/// What the card with every monitor has besides.
-const MONITORS: &str = "[safety]\nparts = [\"recovery_counter\", \"second_interface\", \"second_receiver\", \"error_test\"]\n";
 /// Width of the encoders' positions.
 const POSITION_BITS: u32 = 25;
 const SYSTEM_HZ: u64 = 32_000_000;
 const CYCLES_PER_US: u64 = SYSTEM_HZ / 1_000_000;
 const CYCLE: Time = US / CYCLES_PER_US;
 const LANES: usize = 128;
-/// Longest wait of a request for its frame: one at least, as milliseconds are counted.
-const REQUEST_MS: u16 = 2;
-/// The service waits for one millisecond more than it is told: with this one for none.
-const NO_WAIT: u16 = u16::MAX;
-/// And the longest wait is 16 ms.
-const WAIT_MASK: u16 = 0x000F;
 /// Cycles for which the trigger pin is held.
 const PULSE: u64 = 4;
 /// A frame with a longer period measures the delay.
 const SLOW: Time = 500 * NS;
 /// A host that has not come to an end by then never will: many times what the longest one takes.
 const LONGEST: u64 = 8_000_000;
-
-/// The card's configuration.
-fn configuration(subject: CardSubject) -> Result<CardConfig, GenError> {
-    let monitors = if subject.has_monitors() { MONITORS } else { "" };
-    let text = format!("{CONFIGURATION}{monitors}");
-    let project = config::parse("card.toml", &text).map_err(|all| {
-        let all: Vec<String> = all.iter().map(|d| d.to_string()).collect();
-        GenError::input(all.join("; "))
-    })?;
-    // Shorter than a board and an encoder allow, so that a case takes little time.
-    let mut card = project.card;
-    card.uart_bit_cycles = BIT_CYCLES;
-    card.channels.iter_mut().for_each(|c| c.abort_us = ABORT_US);
-    Ok(card)
-}
-
-/// Its design.
-fn design(card: &CardConfig) -> Result<Design, GenError> {
-    let times = ServiceTimes {
-        request_ms: REQUEST_MS,
-        busy_ms: REQUEST_MS,
-        reset_ms: NO_WAIT,
-        write_ms: NO_WAIT,
-        gap_ms: NO_WAIT,
-        stuck_ms: REQUEST_MS,
-        wait_mask: WAIT_MASK,
-        ..service_times(card)
-    };
-    let mut block = Card::with_times(card, TIMEOUT_US, &times);
-    block.connect_all();
-    elaborate(&block, "card").map_err(|e| GenError::fault("campaign", &e))
-}
 
 /// A card in each lane, with its encoders, and what the hosts do at its pins.
 #[derive(Clone)]

@@ -6,6 +6,7 @@ use crate::prove::Subject;
 use crate::{scratch, tools};
 use rtl_design::elaborate::Module;
 use std::path::Path;
+use std::time::Duration;
 
 /// Finds invariants by itself where an induction is too short.
 const PDR: &str = "yosys-abc";
@@ -15,6 +16,8 @@ const PROVED: &str = "Property proved.";
 
 /// Seconds for one question.
 const TIMEOUT_S: u32 = 30;
+/// Time for signals that are always alike and invariants together: in a large block the first have no end of their own.
+const LONGEST: Duration = Duration::from_secs(600);
 /// Longest induction, in cycles.
 const STEPS_MAX: u32 = 8;
 /// Longest induction over signals of both that are always alike, in cycles: longer than a bit of a serial line in a card that is simulated.
@@ -76,6 +79,6 @@ fn by_invariants(folder: &Path, both: &str) -> Result<bool, GenError> {
         return Ok(false);
     }
     let question = format!("read_aiger {AIGER}; scorr -q -F {ALIKE_CYCLES}; pdr -T {TIMEOUT_S}");
-    let ran = tools::run(PDR, folder, &["-q", &question])?;
-    Ok(ran.is_good && ran.text().contains(PROVED))
+    let ran = tools::run_within(PDR, folder, &["-q", &question], LONGEST)?;
+    Ok(ran.is_some_and(|ran| ran.is_good && ran.text().contains(PROVED)))
 }

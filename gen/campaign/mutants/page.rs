@@ -25,7 +25,7 @@ What the ports do is compared with the design, for the unchanged Verilog, by `te
 card alone; with `-- --ignored` for all rows and the others, but for benches that set registers inside their card. A mutant of the columns *ports* and *alone* would turn these tests red.
 
 A mutant that none of them sees may change nothing at all: where yosys proves, with all inputs free, that no port ever differs, it is *equivalent*, and does not count. \
-yosys's own solver is asked first, then ABC for signals that are always alike (`scorr`) and for invariants that no short induction has (`pdr`). All others survive, and are listed below; that a solver finds no proof in half a minute \
+yosys's own solver is asked first, then ABC for signals that are always alike (`scorr`) and for invariants that no short induction has (`pdr`). All others survive, and are listed below; that a solver finds no proof in its time, half a minute or ten, \
 does not say that something changes.
 
 Each block is mutated by itself, in the first card of the table that has it, in all its places at once. yosys spreads mutants evenly; those at the output of a register are \

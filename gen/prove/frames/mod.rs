@@ -11,12 +11,12 @@
 
 mod cases;
 mod forms;
-mod netlist;
 mod text;
 mod walk;
 
 pub use cases::{prove_case, prove_cases, FrameCase, PLAIN};
 
+use super::netlist::{self, Netlist};
 use super::{tools, Subject, Trace, CHANNEL};
 use crate::artifact::Artifact;
 use crate::config::Project;
@@ -25,7 +25,6 @@ use crate::scratch;
 use clap::ValueEnum;
 use endat_hdl::config::{ChannelConfig, PhaseSource};
 use endat_hdl::protocol::ModeCommand;
-use netlist::Netlist;
 use rtl_design::elaborate::Module;
 use serde::Serialize;
 use std::fmt;

@@ -1,9 +1,9 @@
 //! Runs of a channel with its encoder, in which every bit is a function of what may be anything.
 
 use super::forms::{Form, Forms, Sample};
-use super::netlist::{Kind, Net, Netlist, ANYTHING, HIGH};
 use super::text;
 use super::{Case, Trace, Undriven};
+use crate::prove::netlist::{Kind, Net, Netlist, ANYTHING, HIGH};
 use endat_sim::diagram::Wave;
 
 /// Longest run, in microseconds: the frame that measures takes less.
