@@ -36,7 +36,7 @@ const OF_CARD: &[Element] = &[
     Element(&["core.service", "core.port"], "services", "answer of the encoder, its state"),
     Element(&["core.trigger"], "trigger", "count of triggers"),
     Element(&["core.timebase"], "time base", "nothing: time stamps are another moment's"),
-    Element(&["core.second"], "second interface", "CRC-16 of each channel, CRC5 of the position, count of answers"),
+    Element(&["core.second", "core.record"], "second interface", "CRC-16 of each channel, CRC5 of the position, count of answers"),
     Element(&["core.recovery"], "recovery counter", "limits of the control that reads it; not read here"),
 ];
 

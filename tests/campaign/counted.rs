@@ -269,6 +269,29 @@ fn the_page_is_what_the_results_say() {
     assert_eq!(PAGE, outcome.stdout);
 }
 
+/// With every monitor one upset of a thousand at most is a wrong position that is told as good, none of them in a receiver; the page on safety
+/// has the count.
+#[test]
+fn a_card_with_every_monitor_keeps_what_it_promises() {
+    let tally = committed("upsets_safety").tally;
+    let (all, silent) = (
+        tally.count(budget::is_case),
+        tally.count(|r| r.class == "silent"),
+    );
+    assert!(1000 * silent <= all, "{silent} of {all}");
+    let is_receiver = |place: &str| place.contains(".receiver.") || place.contains(".second_0.");
+    let of_receivers = |class: &str| {
+        tally.count(|r| r.class == class && r.place.contains("channel_0") && is_receiver(&r.place))
+    };
+    assert_eq!(of_receivers("silent"), 0);
+    assert!(of_receivers("detected") > 1000);
+    let page = include_str!("../../docs/safety.md");
+    let (thousands, rest) = (all / 1000, all % 1000);
+    let share = 100.0 * silent as f64 / all as f64;
+    let told = format!("{silent} of {thousands} {rest:03} upsets end in a wrong position that is told as good, {share:.3} %");
+    assert!(page.contains(&told), "docs/safety.md: {told}");
+}
+
 /// Some of the cases again: their rows must be the committed ones.
 #[test]
 fn the_results_are_those_of_this_core() {

@@ -6,19 +6,9 @@ pub const NOTHING: &str = "changes nothing";
 /// Block, a piece of its source at the place of the mutant or of its name, and the reason.
 const REASONS: &[(&str, &str, &str)] = &[
     (
-        "AsyncDsp",
-        "`if (rst_i) begin`: Y[7]",
-        "changes nothing, which induction does not find: bit 7 of the settings has no meaning, and nothing reads it",
-    ),
-    (
         "Exchange",
         "`bad_echo_next = bad_echo | differs;`",
         "an address of the encoder's memory that comes back with one wrong bit, not the last one: the bench spoils another one, random inputs do not come so far, and no property speaks of it",
-    ),
-    (
-        "Timebase",
-        "count",
-        "changes nothing: the block has no input but its reset, the bench runs through all its states, and no port differs; the induction is too short for it",
     ),
     (
         "UartReceiver",
@@ -54,44 +44,9 @@ const REASONS: &[(&str, &str, &str)] = &[
         "one register of those that a right check sum sets, needed by a write of several words: the bench writes single words, and random levels at the pins are no commands",
     ),
     (
-        "AddInfo",
-        "`assign is_sent",
-        "causes behind which a block of additional data is not told: the bench has none of them in a frame with two blocks",
-    ),
-    (
-        "DirectOutput",
-        "error_causes",
-        "one of the causes that the host may choose for the error output: the bench chooses others, and random inputs seldom meet the address",
-    ),
-    (
-        "Interrupt",
-        "had_error_0[0]",
-        "an error that ends and comes again before another result",
-    ),
-    (
-        "LineMonitor",
-        "`if (phase < drift_reference) begin`",
-        "a drift to an earlier phase with a pattern in two of its bits: the bench's cable does not become shorter so far",
-    ),
-    (
         "Sequencer",
         "",
         "an instruction that the program of this card does not have in this form; the block alone runs no program",
-    ),
-    (
-        "Service",
-        "",
-        "the watchdog of the sequencer: its program would have to hang, which only an upset makes it do (`campaign upsets`)",
-    ),
-    (
-        "WholeResult",
-        "`if (closes) begin`",
-        "a bit of additional data that is the same in every answer of the bench; alone, the order of a whole result seldom comes about",
-    ),
-    (
-        "WordAccess",
-        "",
-        "a read that goes on where another word was read just before: the order of addresses and times seldom comes about",
     ),
     (
         "EncoderPort",
