@@ -1,16 +1,18 @@
-//! That nothing unknown is left in a channel after a reset: with all registers and inputs unknown, a cycle of reset gives each register a level.
+//! That nothing unknown is left in a channel after a reset: whatever its registers held, a cycle of it gives each a level, or what comes in.
 
 use super::netlist::{Kind, Netlist, Register, HIGH, LOW};
 use super::report::{Row, Verdict};
 use super::tools;
 use crate::artifact::Artifact;
 use crate::error::GenError;
-use rtl_design::elaborate::Module;
+use rtl_design::elaborate::{Direction, Module};
+use rtl_design::verilog::emitted_name;
 use std::path::Path;
 
 /// Its name in tables.
 pub const NAME: &str = "known_after_reset";
-const WORDS: &str = "After a cycle of reset no register has anything of what it held, or of what came in: nothing unknown is left.";
+const WORDS: &str =
+    "After a cycle of reset no register has anything of what it held: nothing unknown is left.";
 const RESET: &str = "reset";
 
 /// The row of a part.
@@ -18,7 +20,7 @@ pub(super) fn row(folder: &Path, files: &[Artifact], module: &Module) -> Result<
     let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
     let text = tools::gates_without_memories(folder, &names, &module.name)?;
     let netlist = Netlist::read(&text, &module.name).map_err(|what| tools::not_read(&what))?;
-    let left = left(&netlist).map_err(|what| tools::not_read(&what))?;
+    let left = left(&netlist, module).map_err(|what| tools::not_read(&what))?;
     Ok(Row {
         module: module.name.clone(),
         name: NAME.into(),
@@ -33,30 +35,71 @@ pub(super) fn row(folder: &Path, files: &[Artifact], module: &Module) -> Result<
     })
 }
 
-/// How many bits of registers have no level after a cycle of reset.
-fn left(netlist: &Netlist) -> Result<usize, String> {
-    let mut levels: Vec<Option<bool>> = vec![None; netlist.net_count];
-    (levels[LOW], levels[HIGH]) = (Some(false), Some(true));
-    let reset = netlist.names.get(RESET).and_then(|nets| nets.first());
-    levels[*reset.ok_or("no reset")?] = Some(true);
-    for gate in &netlist.gates {
-        let [a, b, c] = gate.inputs.map(|net| levels[net]);
-        levels[gate.output] = match (gate.kind, a, b) {
-            (Kind::Not, a, _) => a.map(|a| !a),
-            (Kind::And, Some(false), _) | (Kind::And, _, Some(false)) => Some(false),
-            (Kind::And, Some(true), Some(true)) => Some(true),
-            (Kind::Or, Some(true), _) | (Kind::Or, _, Some(true)) => Some(true),
-            (Kind::Or, Some(false), Some(false)) => Some(false),
-            (Kind::Xor, Some(a), Some(b)) => Some(a != b),
-            (Kind::Mux, a, b) => match c {
-                Some(false) => a,
-                Some(true) => b,
-                None if a == b => a,
-                None => None,
-            },
-            _ => None,
-        };
+/// What is known of a net.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Level {
+    Low,
+    High,
+    /// What comes in decides.
+    In,
+    /// What a register held, or a memory holds, may decide.
+    Held,
+}
+
+impl Level {
+    fn is_known(self) -> bool {
+        matches!(self, Self::Low | Self::High)
     }
-    let is_left = |r: &&Register| levels[r.input].is_none();
+
+    /// Of a gate in which all of these decide.
+    fn of(all: &[Self]) -> Self {
+        match all.contains(&Self::Held) {
+            true => Self::Held,
+            false => Self::In,
+        }
+    }
+}
+
+fn level(kind: Kind, [a, b, c]: [Level; 3]) -> Level {
+    use Level::{High, Low};
+    match (kind, a, b) {
+        (Kind::Not, Low, _) => High,
+        (Kind::Not, High, _) => Low,
+        (Kind::Not, ..) => a,
+        (Kind::And, Low, _) | (Kind::And, _, Low) => Low,
+        (Kind::And, High, other) | (Kind::And, other, High) => other,
+        (Kind::Or, High, _) | (Kind::Or, _, High) => High,
+        (Kind::Or, Low, other) | (Kind::Or, other, Low) => other,
+        (Kind::Xor, Low, other) | (Kind::Xor, other, Low) => other,
+        (Kind::Xor, High, High) => Low,
+        (Kind::Mux, ..) => match c {
+            Low => a,
+            High => b,
+            _ if a == b && a.is_known() => a,
+            _ => Level::of(&[a, b, c]),
+        },
+        _ => Level::of(&[a, b]),
+    }
+}
+
+/// How many bits of registers have something of what was held after a cycle of reset.
+fn left(netlist: &Netlist, module: &Module) -> Result<usize, String> {
+    let mut levels = vec![Level::Held; netlist.net_count];
+    (levels[LOW], levels[HIGH]) = (Level::Low, Level::High);
+    let inputs = module.ports.iter();
+    for port in inputs.filter(|port| port.direction != Direction::Output) {
+        let name = emitted_name(&module.nets[port.net].name);
+        let nets = netlist.names.get(&name);
+        for net in nets.ok_or_else(|| format!("no {name}"))? {
+            levels[*net] = match name.as_str() {
+                RESET => Level::High,
+                _ => Level::In,
+            };
+        }
+    }
+    for gate in &netlist.gates {
+        levels[gate.output] = level(gate.kind, gate.inputs.map(|net| levels[net]));
+    }
+    let is_left = |r: &&Register| levels[r.input] == Level::Held;
     Ok(netlist.registers.iter().filter(is_left).count())
 }
