@@ -18,7 +18,7 @@ The properties stand at the end of their modules below `` `ifdef FORMAL ``, so o
 
 **What a proof says.** A part of the card, an EnDat channel with all its blocks for instance, is proved by itself, and every input of it may be anything in every cycle: DATA, triggers,
 reset, and all settings, legal or not. *From the start values* means: after configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any
-state* means: whatever the registers hold, for instance after an upset. The properties of a part are proved together, so one may lean on another in the cycles before. `known_after_reset` stands in no module: it is looked at in the gates of a channel as it is synthesised.
+state* means: whatever the registers hold, for instance after an upset. The properties of a part are proved together, so one may lean on another in the cycles before. `known_after_reset` stands in no module: it is looked at in the gates of a channel as it is synthesised. That the cause is the one of the highest rank, whatever happened at once, is proved by the suite, for all flags (`tests/verilog/formal.rs`).
 
 **What it does not say.** The bus fronts are proved in the suite (`tests/verilog/fronts.rs`); services, line monitor, direct outputs, recovery counter, second interface and interrupt are simulated only. A frame that carries
 a request, additional data or a supplement, and a clock that goes on, are outside `crc_as_received`, `error_bits_as_received` and `bits_counted`; `forward_only`, `phases_are_timed` and
