@@ -26,7 +26,7 @@ pub(super) fn row(folder: &Path, files: &[Artifact], module: &Module) -> Result<
         name: NAME.into(),
         words: WORDS.into(),
         from_any_state: true,
-        assertions: netlist.registers.len(),
+        assertions: 1,
         verdict: match left {
             0 => Verdict::Proved,
             _ => Verdict::Violated { after_cycles: 1 },

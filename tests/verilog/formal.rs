@@ -27,7 +27,11 @@ fn equal(test: &str, files: &[Artifact], wrapper: &str, reference: &str) -> (boo
         fs::write(folder.join(&file.path), &file.text).unwrap();
         names.push(file.path.as_str());
     }
-    fs::write(folder.join("reference.v"), format!("{wrapper}\n{reference}")).unwrap();
+    fs::write(
+        folder.join("reference.v"),
+        format!("{wrapper}\n{reference}"),
+    )
+    .unwrap();
     // ABC's `collapse` makes decision diagrams, in which parities stay small; a solver alone takes hours over 50 bits.
     let script = format!(
         "read_verilog {} reference.v; proc; flatten; opt_clean; miter -equiv -flatten candidate reference both; hierarchy -top both; opt -full; techmap; opt; abc -script +strash;collapse;sop;strash;map; sat -verify -prove trigger 0 both",
