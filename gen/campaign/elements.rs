@@ -147,8 +147,11 @@ mod tests {
             element(&row).map(|e| e.1)
         };
         assert_eq!(name(PORT, "receiver.check.sum"), Some("the two CRCs"));
+        assert_eq!(name(PORT, "receiver.word"), Some("receiver"));
         let safety = CardSubject::Safety.name();
         assert_eq!(name(safety, "core.bank.ring.w0"), Some("configuration"));
+        let bank = Some("register bank, results for the host");
+        assert_eq!(name(safety, "core.bank.word"), bank);
         let held = "core.port_1.channel_0.snapshot.held";
         assert_eq!(name(safety, held), Some("result that is held"));
     }

@@ -68,7 +68,7 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(engine: Lanes, subject: CardSubject) -> Self {
+    fn new(engine: Lanes, card: &CardConfig) -> Self {
         let port = |channel: usize| {
             let mut encoder = EncoderConfig::endat22(POSITION_BITS).seed(channel as u64 + 1);
             encoder.tm = 1_500 * NS..=1_500 * NS;
@@ -80,7 +80,7 @@ impl Bench {
         };
         let mut bench = LaneBench::new(engine, SYSTEM_HZ, (0..CHANNELS).map(port).collect());
         let uart = LaneUart::new(&mut bench, BIT_CYCLES);
-        let second = (subject.has_monitors()).then(|| Masters::new(&mut bench));
+        let second = (card.safety.second_interface).then(|| Masters::new(&mut bench));
         Self {
             bench,
             uart,
@@ -263,10 +263,10 @@ struct Ready {
 }
 
 impl Ready {
-    fn new(pushes: bool, engine: Lanes, card: &CardConfig, subject: CardSubject) -> Self {
+    fn new(pushes: bool, engine: Lanes, card: &CardConfig) -> Self {
         let blocks = std::iter::once(None).chain((0..CHANNELS).map(Some));
         let words: Vec<_> = blocks.map(|block| config_words(card, block)).collect();
-        let mut bench = Bench::new(engine, subject);
+        let mut bench = Bench::new(engine, card);
         (0..CYCLES_PER_US * (ABORT_US + 10)).for_each(|_| bench.tick());
         let lane = |_| {
             let words = words.clone();
@@ -395,7 +395,7 @@ impl Campaign for CardUpsets {
         let kind = group.kind;
         let pushes = kind == Kind::Stream;
         let ready = self.ready[usize::from(pushes)]
-            .get_or_init(|| Ready::new(pushes, self.engine.clone(), &self.card, self.subject));
+            .get_or_init(|| Ready::new(pushes, self.engine.clone(), &self.card));
         let (begun, span) = *group.window.get_or_init(|| ready.window(kind));
         let label = format!("{} {}", self.subject.name(), kind.name());
         let case = |number| self.flops.case(self.draw, self.seed, &label, span, number);
