@@ -6,6 +6,7 @@ use endat_hdl::endat::service::{
     map::{plate, state, word, NAME_PLATE, PLATE_DELAY},
     program::{step_name, steps},
 };
+use endat_hdl::protocol::ModeCommand::SendPositionAddInfo;
 use endat_sim::{
     encoder::{area, Defect, EncoderConfig, Violation, DEVICES, LONG_RECOVERY, SHORT_RECOVERY},
     MS,
@@ -59,6 +60,24 @@ fn every_device_is_found_from_nothing() {
         assert_eq!(rig.bench.frames(0).last().unwrap().command, Some(code));
         assert_only_the_pulse(&rig);
     }
+}
+
+/// Catches triggers that are let through before the last step: after the wait for a reset, for example.
+#[test]
+fn no_trigger_disturbs_it() {
+    let mut rig = Rig::new(true, quick(EncoderConfig::endat22(25)), 25);
+    let under_way = u32::from(state::INITIALISING);
+    rig.wait_for(word::STATE, |s| s & under_way != 0);
+    while rig.read(word::STATE) & under_way != 0 {
+        rig.frames(1);
+    }
+    assert!(rig.is_initialised());
+    assert_only_the_pulse(&rig);
+    let position = Some(SendPositionAddInfo.code());
+    let frames = rig.bench.frames(0);
+    assert!(frames.iter().all(|f| f.command != position), "{frames:?}");
+    rig.frames(2);
+    rig.good_position();
 }
 
 #[test]

@@ -66,3 +66,28 @@ fn every_error_has_its_code() {
     assert_eq!(finished, 8);
     rig.good_position();
 }
+
+/// A trigger in any moment around the reset's frame and the encoder's start: none reaches the encoder before it is there again.
+/// Catches triggers that are let through between the end of the frame and the wait.
+#[test]
+fn no_trigger_disturbs_the_start_of_an_encoder_that_is_reset() {
+    let encoder = encoder().position(PositionSource::Ramp { start: 0, step: 77 });
+    let mut rig = Rig::new(false, encoder, 25);
+    rig.good_position();
+    let reset = u32::from(ReceiveReset.code()) << 24;
+    // Apart by a little more than a frame: every request meets them somewhere else.
+    let apart = rig.bench.system_hz() / 9_001;
+    for _ in 0..12 {
+        let before = rig.read(word::REQUEST_STATE) >> 16;
+        rig.write(word::REQUEST, reset);
+        while rig.read(word::REQUEST_STATE) >> 16 == before {
+            rig.bench.trigger();
+            rig.bench.run_cycles(apart);
+        }
+        assert_eq!(rig.read(word::REQUEST_STATE) as u16, 0, "fulfilled");
+        rig.assert_clean();
+        // Those that came while the request's frame was under way are told with the first position behind it.
+        rig.frames(2);
+        rig.good_position();
+    }
+}

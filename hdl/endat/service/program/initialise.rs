@@ -164,9 +164,7 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(0).st(low(word::PROGRESS));
     a.ld(low(word::STATE)).andi(!state::INITIALISING);
     a.st(low(word::STATE));
-    a.ld(own::LEVELS).andi(!level::HOLD_OFF);
-    keep(a, own::LEVELS);
-    a.out(output::CONTROL);
+    a.call("let_triggers");
     a.call("modulus");
     a.ld(own::FROM_INITIALISE).jmpa();
 

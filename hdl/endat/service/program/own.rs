@@ -9,7 +9,6 @@ pub const FROM_EVENT: u8 = FIRST + 1;
 pub const FROM_STORE: u8 = FIRST + 2;
 pub const FROM_WAIT: u8 = FIRST + 3;
 pub const FROM_OWN: u8 = FIRST + 4;
-pub const FROM_STEP: u8 = FIRST + 5;
 pub const FROM_INITIALISE: u8 = FIRST + 6;
 /// Who uses the request: see [`super::requests::mailbox`].
 pub const MAILBOX: u8 = FIRST + 7;

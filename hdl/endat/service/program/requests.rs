@@ -1,6 +1,6 @@
 //! Requests of the host, and frames of their own.
 
-use super::{high, low, minus, own, set, ServiceTimes};
+use super::{high, keep, keep_bits, low, minus, own, set, ServiceTimes};
 use crate::endat::sequencer::assembler::Assembler;
 use crate::endat::service::map::{
     input, input::status, output, output::acknowledge, output::control as level, output::go,
@@ -75,6 +75,13 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
 
     a.place(is_own);
     a.ldi(mailbox::OWN).st(own::MAILBOX);
+    // No trigger may disturb the encoder's start: not even one that comes right behind the reset's frame.
+    let lasts = a.label();
+    a.ld(own::MODE);
+    a.xori(code(ModeCommand::ReceiveReset)).jnz(lasts);
+    keep_bits(a, own::LEVELS, level::HOLD_OFF);
+    a.out(output::CONTROL);
+    a.place(lasts);
     a.ldi(go::OWN).st(own::GO);
     a.call("own_frame");
     let (bare, kept) = (a.label(), a.label());
@@ -92,6 +99,7 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.place(kept).call("judge");
     a.st(own::ERROR);
     a.call("pause");
+    a.call("let_triggers");
     a.ld(own::ERROR).call("finish");
     a.jmp("main");
 
@@ -114,12 +122,12 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.xori(code(ModeCommand::SelectMemory)).jz(write);
     a.ldi(times.gap_ms).jmp("wait");
     a.place(write).ldi(times.write_ms).jmp("wait");
-    // No trigger may disturb the encoder's start.
-    a.place(reset).link().st(own::FROM_STEP);
-    a.ldi(level::HOLD_OFF).out(output::CONTROL);
-    a.ldi(times.reset_ms).call("wait");
-    a.ld(own::LEVELS).out(output::CONTROL);
-    a.ld(own::FROM_STEP).jmpa();
+    a.place(reset).ldi(times.reset_ms).jmp("wait");
+
+    a.place("let_triggers");
+    a.ld(own::LEVELS).andi(!level::HOLD_OFF);
+    keep(a, own::LEVELS);
+    a.out(output::CONTROL).ret();
 
     // Ends the request that waits, with error A; not if its frame has begun in this moment.
     let begun = a.label();
