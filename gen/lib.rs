@@ -46,7 +46,9 @@ use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard, HostBus,
 };
-use endat_hdl::card::{bare_port, Card};
+use endat_hdl::card::uart_bridge::TIMEOUT_US;
+use endat_hdl::card::{bare_port, service_times, Card};
+use endat_hdl::endat::service::program::ServiceTimes;
 use error::GenError;
 use language::Language;
 use rtl_design::elaborate::{elaborate, Design};
@@ -94,22 +96,27 @@ pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, G
 
 /// The card with the front that its configuration asks for.
 pub fn design(project: &Project) -> Result<Design, GenError> {
+    design_with(project, &service_times(&project.card), TIMEOUT_US)
+}
+
+/// The same with other waits of its services, and another limit on pauses within a command over the UART, for quick simulations.
+pub fn design_with(
+    project: &Project,
+    times: &ServiceTimes,
+    link_timeout_us: u64,
+) -> Result<Design, GenError> {
     fn of(mut card: impl Block, name: &str) -> Result<Design, GenError> {
         card.connect_all();
-        elaborate(&card, name).map_err(|e| {
-            GenError::input(format!(
-                "design: {e}; this is a fault of endat-gen, please report it"
-            ))
-        })
+        elaborate(&card, name).map_err(|e| GenError::fault("design", &e))
     }
     let (card, name) = (&project.card, &project.name);
     let design = match project.bus {
-        HostBus::Uart => of(Card::new(card), name),
-        HostBus::Apb => of(ApbCard::new(card), name),
-        HostBus::Wishbone => of(WishboneCard::new(card), name),
-        HostBus::AxiLite => of(AxiLiteCard::new(card), name),
-        HostBus::Spi => of(SpiCard::new(card), name),
-        HostBus::Parallel => of(ParallelCard::new(card), name),
+        HostBus::Uart => of(Card::with_times(card, link_timeout_us, times), name),
+        HostBus::Apb => of(ApbCard::with_times(card, times), name),
+        HostBus::Wishbone => of(WishboneCard::with_times(card, times), name),
+        HostBus::AxiLite => of(AxiLiteCard::with_times(card, times), name),
+        HostBus::Spi => of(SpiCard::with_times(card, times), name),
+        HostBus::Parallel => of(ParallelCard::with_times(card, times), name),
         HostBus::Bare => of(bare_port(card), name),
     }?;
     Ok(Design {

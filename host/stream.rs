@@ -54,6 +54,16 @@ impl Sample {
         (!self.taken || self.missing) && (self.valid || self.fresh || self.cause != 0)
     }
 
+    fn status(&self) -> u16 {
+        let flag = |is_set: bool, bit: u16| if is_set { bit } else { 0 };
+        u16::from(self.cause) & status::CAUSE
+            | flag(self.taken, status::TAKEN)
+            | flag(self.valid, status::VALID)
+            | flag(self.fresh, status::FRESH)
+            | (u16::from(self.line) & status::LINE) << status::LINE_LSB
+            | flag(self.missing, status::MISSING)
+    }
+
     /// Name of the primary cause, on a channel that speaks one protocol or the other.
     pub fn cause_name(&self, is_t_format: bool) -> &'static str {
         causes::name(causes::of_code(self.cause, is_t_format))
@@ -146,6 +156,36 @@ impl SampleSet {
                 .map(sample)
                 .collect(),
         })
+    }
+
+    /// Its frame, as a card sends it: type 1, or 2 where its channels have additional data, or 3 for a running clock.
+    pub fn to_frame(&self) -> Vec<u8> {
+        let has_infos = self.channels.iter().any(|c| c.infos.is_some());
+        let (kind, low) = match (self.run, has_infos) {
+            (Some(channel), _) => (RUN_SET, channel),
+            (None, true) => (INFO_SET, self.channels.len()),
+            (None, false) => (SAMPLE_SET, self.channels.len()),
+        };
+        let mut body = vec![kind << 4 | low as u8, self.lost];
+        body.extend(self.sequence.to_le_bytes());
+        body.extend(self.timestamp.to_le_bytes());
+        for sample in &self.channels {
+            body.extend(&sample.position.to_le_bytes()[..6]);
+            body.extend(sample.status().to_le_bytes());
+            if let (Some(infos), None) = (sample.infos, self.run) {
+                let mut state = u8::from(infos[0].due) << 4;
+                for (n, info) in infos.iter().enumerate() {
+                    body.extend(info.content.to_le_bytes());
+                    body.push(info.status);
+                    state |= (u8::from(info.came) | u8::from(info.good) << 1) << (2 * n);
+                }
+                body.extend([state, 0]);
+            }
+        }
+        body.extend(CHECK.checksum(&body).to_le_bytes());
+        let mut frame = cobs::encode_vec(&body);
+        frame.push(0);
+        frame
     }
 }
 
@@ -267,39 +307,6 @@ mod tests {
         (decoder.take(), decoder.counts())
     }
 
-    fn encode(set: &SampleSet) -> Vec<u8> {
-        let head = match (set.run, set.channels[0].infos) {
-            (Some(channel), _) => 0x30 | channel as u8,
-            (_, Some(_)) => 0x20 | set.channels.len() as u8,
-            _ => 0x10 | set.channels.len() as u8,
-        };
-        let mut body = vec![head, set.lost];
-        body.extend(set.sequence.to_le_bytes());
-        body.extend(set.timestamp.to_le_bytes());
-        for c in &set.channels {
-            body.extend(&c.position.to_le_bytes()[..6]);
-            let status = u16::from(c.cause)
-                | u16::from(c.taken) << 5
-                | u16::from(c.valid) << 6
-                | u16::from(c.fresh) << 7
-                | u16::from(c.line) << 8
-                | u16::from(c.missing) << 15;
-            body.extend(status.to_le_bytes());
-            let Some(infos) = c.infos else { continue };
-            let mut state = u8::from(infos[0].due) << 4;
-            for (n, info) in infos.iter().enumerate() {
-                body.extend(info.content.to_le_bytes());
-                body.push(info.status);
-                state |= (u8::from(info.came) | u8::from(info.good) << 1) << (2 * n);
-            }
-            body.extend([state, 0]);
-        }
-        body.extend(CHECK.checksum(&body).to_le_bytes());
-        let mut frame = cobs::encode_vec(&body);
-        frame.push(0);
-        frame
-    }
-
     fn set(sequence: u16) -> SampleSet {
         let channel = |n: u64| Sample {
             position: u64::from(sequence) * 1_000_003 % (1 << 29) + n,
@@ -341,13 +348,13 @@ mod tests {
         };
         assert_eq!(sets, std::slice::from_ref(&expected));
         assert_eq!((counts.sets, counts.damaged), (1, 0));
-        assert_eq!(encode(&expected), bytes(FRAME));
+        assert_eq!(expected.to_frame(), bytes(FRAME));
     }
 
     /// Two frames at most are lost to whatever happens in one place.
     #[test]
     fn after_loss_insertion_and_corruption_it_is_there_again() {
-        let frames: Vec<Vec<u8>> = (0..6).map(|n| encode(&set(n))).collect();
+        let frames: Vec<Vec<u8>> = (0..6).map(|n| set(n).to_frame()).collect();
         let stream: Vec<u8> = frames.concat();
         let all: Vec<SampleSet> = (0..6).map(set).collect();
         for place in 0..stream.len() {
@@ -383,7 +390,7 @@ mod tests {
         assert!(decoder.take().len() <= 1, "garbage was taken for samples");
         assert!(decoder.frame.len() <= ENCODED_MAX);
         decoder.push(0);
-        encode(&set(3)).iter().for_each(|b| decoder.push(*b));
+        set(3).to_frame().iter().for_each(|b| decoder.push(*b));
         assert_eq!(decoder.take(), [set(3)]);
     }
 
@@ -391,13 +398,13 @@ mod tests {
     fn what_the_card_dropped_and_what_the_line_dropped_are_counted_apart() {
         let mut late = set(9);
         late.lost = 3;
-        let stream = [encode(&set(5)), encode(&late)].concat();
+        let stream = [set(5).to_frame(), late.to_frame()].concat();
         let counts = decode(&stream).1;
         assert_eq!(
             (counts.sets, counts.lost_in_card, counts.missing),
             (2, 3, 3)
         );
-        let wrapped = [encode(&set(0xFFFF)), encode(&set(0))].concat();
+        let wrapped = [set(0xFFFF).to_frame(), set(0).to_frame()].concat();
         assert_eq!(decode(&wrapped).1.missing, 0);
     }
 
@@ -416,7 +423,7 @@ mod tests {
                 position, cause, line, taken: flags[0], valid: flags[1], fresh: flags[2], missing: flags[3], infos: infos(of),
             });
             let set = SampleSet { run, lost, sequence, timestamp, channels: channels.collect() };
-            let frame = encode(&set);
+            let frame = set.to_frame();
             prop_assert!(frame[0] <= 139 && !frame[..frame.len() - 1].contains(&0));
             prop_assert_eq!(decode(&frame).0, vec![set]);
         }

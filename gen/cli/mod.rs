@@ -22,7 +22,7 @@ mod sim;
 mod work;
 
 use crate::board::Board;
-use crate::config::{self, check_name, Configuration, Project};
+use crate::config::{self, check_name, Configuration};
 use crate::error::{shown, GenError};
 use crate::explain;
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -260,15 +260,6 @@ impl SourceArgs {
                 let text = config::preset_for("--preset", name, board)?;
                 let file = format!("{name}.toml");
                 Ok(config::parse_any_on(&file, &text, Some(board))?)
-            }
-        }
-    }
-
-    fn load(&self) -> Result<Project, GenError> {
-        match (&self.config, &self.preset) {
-            (Some(file), _) => config::load_file(file),
-            (None, preset) => {
-                config::load_preset(preset.as_deref().unwrap_or(config::DEFAULT_PRESET))
             }
         }
     }

@@ -14,7 +14,7 @@ use super::reader::{Source, Table};
 use super::words::{RECEIVER_BUS, T_FORMAT};
 use crate::form::key::Key;
 use endat_hdl::t_format::dsp::TFormatStart;
-use endat_hdl::t_format::protocol::FAST_BIT_HZ;
+use endat_hdl::t_format::protocol::{BIT_HZ, FAST_BIT_HZ};
 use toml::de::DeTable;
 
 /// A checked configuration of a receiver.
@@ -30,6 +30,17 @@ pub struct Receiver {
     pub initial_values: bool,
     /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
     pub hash: String,
+}
+
+impl Receiver {
+    /// Rate of its encoder, in hertz.
+    pub const fn bit_hz(&self) -> u64 {
+        if self.start.fast {
+            FAST_BIT_HZ
+        } else {
+            BIT_HZ
+        }
+    }
 }
 
 /// Longest filter at the fast rate and a clock of 20 MHz, where a bit has four clocks.

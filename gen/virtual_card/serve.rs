@@ -268,6 +268,7 @@ pub fn serve(
     limit: Option<Duration>,
     mut report: impl FnMut(Pace),
 ) {
+    card.keep_time();
     let begin = Instant::now();
     let first = card.now();
     let simulated = |card: &VirtualCard| (card.now() - first) as f64 / SECOND;

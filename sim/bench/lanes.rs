@@ -284,7 +284,7 @@ impl Port {
                 *data = *data & !(1 << bit) | u64::from(link.data()) << bit;
                 self.due[64 * part + bit] = link.next_event();
             }
-            engine.set_word(self.ids.data_i, 0, part, *data);
+            engine.set_word(self.ids.data.data_i, 0, part, *data);
         }
     }
 
@@ -292,8 +292,8 @@ impl Port {
     fn take_pins(&mut self, engine: &mut Lanes, now: Time) {
         for part in 0..self.data.len() {
             let clock = engine.word(self.ids.clock, 0, part);
-            let driven = engine.word(self.ids.data_oe, 0, part);
-            let level = engine.word(self.ids.data_o, 0, part) & driven;
+            let driven = engine.word(self.ids.data.data_oe, 0, part);
+            let level = engine.word(self.ids.data.data_o, 0, part) & driven;
             let before = std::mem::replace(&mut self.pins[part], [clock, driven, level]);
             let changed = clock ^ before[0] | driven ^ before[1] | level ^ before[2];
             for bit in bits(changed) {

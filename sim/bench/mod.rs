@@ -33,7 +33,7 @@ use crate::{
     line::{Conflict, Sample},
     Time,
 };
-use pins::{Pins, TimeBase};
+use pins::{DataPins, Pins, TimeBase};
 use record::ResultPorts;
 use rtl_design::engine::Engine;
 use sampler::Sampler;
@@ -95,23 +95,12 @@ impl<E: Engine> Bench<E> {
     /// A bench with the system clock `system_hz`, and a link on each named set of pins.
     pub fn new(engine: E, system_hz: u64, links: Vec<(PinNames, Link)>) -> Self {
         let base = TimeBase::find(engine.ports());
-        let ports = links
-            .into_iter()
-            .map(|(names, link)| Port {
-                link,
-                ids: Pins::find(&names, engine.ports()),
-                data: None,
-                due: 0,
-                pins: None,
-                sampler: Sampler::default(),
-            })
-            .collect();
         let result_ports = ResultPorts::find(engine.ports());
-        Self {
+        let mut bench = Self {
             engine,
             system_hz,
             cycle: 0,
-            ports,
+            ports: Vec::with_capacity(links.len()),
             t_format: Vec::new(),
             base,
             trigger_until: 0,
@@ -121,12 +110,29 @@ impl<E: Engine> Bench<E> {
             watched: Vec::new(),
             cycles: None,
             is_double: false,
+        };
+        for (names, link) in links {
+            bench.add_endat(&names, link);
         }
+        bench
+    }
+
+    /// Puts a link on a set of pins; gives its number.
+    pub fn add_endat(&mut self, names: &PinNames, link: Link) -> usize {
+        self.ports.push(Port {
+            link,
+            ids: Pins::find(names, self.engine.ports()),
+            data: None,
+            due: 0,
+            pins: None,
+            sampler: Sampler::default(),
+        });
+        self.ports.len() - 1
     }
 
     /// Puts a T-format encoder on a set of pins; gives its number among those.
     pub fn add_t_format(&mut self, names: &PinNames, link: TFormatLink) -> usize {
-        let ids = Pins::find(names, self.engine.ports());
+        let ids = DataPins::find(names, self.engine.ports());
         self.t_format.push(TFormatPort::new(link, ids));
         self.t_format.len() - 1
     }
@@ -340,8 +346,8 @@ impl<E: Engine> Bench<E> {
         self.engine.tick();
         for port in &mut self.ports {
             let clock = self.engine.get(port.ids.clock) != 0;
-            let drive = if self.engine.get(port.ids.data_oe) != 0 {
-                Drive::level(self.engine.get(port.ids.data_o) != 0)
+            let drive = if self.engine.get(port.ids.data.data_oe) != 0 {
+                Drive::level(self.engine.get(port.ids.data.data_o) != 0)
             } else {
                 Drive::Released
             };
@@ -371,7 +377,7 @@ impl<E: Engine> Bench<E> {
             let data = port.link.data();
             if port.data != Some(data) {
                 port.data = Some(data);
-                self.engine.set(port.ids.data_i, u128::from(data));
+                self.engine.set(port.ids.data.data_i, u128::from(data));
             }
         }
     }

@@ -3,7 +3,7 @@
 use rtl_design::engine::{Port, PortId};
 
 /// Names of the pins of one EnDat port in a design.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PinNames {
     /// CLOCK output.
     pub clock: String,
@@ -43,6 +43,16 @@ impl PinNames {
             sample_second: format!("sample_second{n}"),
         }
     }
+
+    /// Pins of a T-format receiver; there is no clock on its line.
+    pub fn receiver() -> Self {
+        Self {
+            data_o: "encoder_data_o".into(),
+            data_oe: "encoder_data_oe".into(),
+            data_i: "encoder_data_i".into(),
+            ..Self::default()
+        }
+    }
 }
 
 /// The port called `name`, if there is one.
@@ -50,29 +60,50 @@ pub(super) fn find(ports: &[Port], name: &str) -> Option<PortId> {
     ports.iter().position(|p| p.name == name).map(PortId)
 }
 
+/// The DATA pins of a port, as [`PinNames`] names them.
+#[derive(Clone)]
+pub(super) struct DataPins {
+    pub(super) data_o: PortId,
+    pub(super) data_oe: PortId,
+    pub(super) data_i: PortId,
+}
+
+/// The port called `name`.
+///
+/// # Panics
+/// If the design does not have it: names are written in a bench, not typed by a user.
+fn pin(ports: &[Port], name: &str) -> PortId {
+    find(ports, name).unwrap_or_else(|| panic!("the design has no port {name}"))
+}
+
+impl DataPins {
+    /// # Panics
+    /// If the design does not have one of them.
+    pub(super) fn find(names: &PinNames, ports: &[Port]) -> Self {
+        Self {
+            data_o: pin(ports, &names.data_o),
+            data_oe: pin(ports, &names.data_oe),
+            data_i: pin(ports, &names.data_i),
+        }
+    }
+}
+
 /// The pins of one EnDat port, as [`PinNames`] names them.
 #[derive(Clone)]
 pub(super) struct Pins {
     pub(super) clock: PortId,
-    pub(super) data_o: PortId,
-    pub(super) data_oe: PortId,
-    pub(super) data_i: PortId,
+    pub(super) data: DataPins,
     pub(super) sample_strobe: Option<PortId>,
     pub(super) sample_second: Option<PortId>,
 }
 
 impl Pins {
     /// # Panics
-    /// If the design does not have one of the four: names are written in a bench, not typed by a user.
+    /// If the design does not have clock or DATA.
     pub(super) fn find(names: &PinNames, ports: &[Port]) -> Self {
-        let pin = |name: &str| {
-            find(ports, name).unwrap_or_else(|| panic!("the design has no port {name}"))
-        };
         Self {
-            clock: pin(&names.clock),
-            data_o: pin(&names.data_o),
-            data_oe: pin(&names.data_oe),
-            data_i: pin(&names.data_i),
+            clock: pin(ports, &names.clock),
+            data: DataPins::find(names, ports),
             sample_strobe: find(ports, &names.sample_strobe),
             sample_second: find(ports, &names.sample_second),
         }

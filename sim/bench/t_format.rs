@@ -1,6 +1,6 @@
 //! One T-format encoder at the end of one line.
 
-use super::pins::Pins;
+use super::pins::DataPins;
 use crate::{
     encoder::Drive,
     t_format::{Encoder, EncoderConfig},
@@ -164,12 +164,12 @@ impl TFormatLink {
 /// A link on the pins of a design.
 pub(super) struct TFormatPort {
     pub(super) link: TFormatLink,
-    pub(super) ids: Pins,
+    pub(super) ids: DataPins,
     data: Option<bool>,
 }
 
 impl TFormatPort {
-    pub(super) fn new(link: TFormatLink, ids: Pins) -> Self {
+    pub(super) fn new(link: TFormatLink, ids: DataPins) -> Self {
         Self {
             link,
             ids,

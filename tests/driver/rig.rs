@@ -5,20 +5,16 @@ use super::compiled;
 use crate::bus::{parallel, spi, Master};
 use endat_gen::config::{parse, Project};
 use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
-use endat_hdl::card::bus::{
-    apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
-    wishbone::WishboneCard, HostBus,
-};
-use endat_hdl::card::{service_times, Card};
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::service_times;
 use endat_hdl::endat::service::program::ServiceTimes;
 use endat_sim::bench::{Bench, Link};
 use endat_sim::encoder::{Defect, EncoderConfig, Violation};
 use endat_sim::line::LineConfig;
 use endat_sim::rng::Rng;
 use endat_sim::{MS, US};
-use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::elaborate::Design;
 use rtl_design::engine::Compiled;
-use rust_hdl::prelude::Block;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -49,27 +45,14 @@ pub fn text(bus: HostBus, more: &str) -> String {
 
 /// The card of a project with short waits of its services, as its encoders have them.
 fn quick_design(project: &Project) -> Design {
-    fn of(mut card: impl Block) -> Design {
-        card.connect_all();
-        elaborate(&card, "card").unwrap()
-    }
-    let card = &project.card;
     let times = ServiceTimes {
         power_up_ms: 2,
         after_pulse_ms: 2,
         reset_ms: 3,
         write_ms: 2,
-        ..service_times(card)
+        ..service_times(&project.card)
     };
-    match project.bus {
-        HostBus::Apb => of(ApbCard::with_times(card, &times)),
-        HostBus::Wishbone => of(WishboneCard::with_times(card, &times)),
-        HostBus::AxiLite => of(AxiLiteCard::with_times(card, &times)),
-        HostBus::Spi => of(SpiCard::with_times(card, &times)),
-        HostBus::Parallel => of(ParallelCard::with_times(card, &times)),
-        HostBus::Uart => of(Card::with_times(card, 100, &times)),
-        HostBus::Bare => unreachable!("no card"),
-    }
+    endat_gen::design_with(project, &times, 100).unwrap()
 }
 
 /// An encoder for whose waits these tests have the time.

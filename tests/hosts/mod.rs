@@ -1,6 +1,7 @@
 //! The host's side of a card, against virtual cards: library, commands, and programs that are not ours.
 
 mod again;
+mod buses;
 mod clients;
 mod commands;
 mod continued;

@@ -3,6 +3,7 @@
 use super::super::work::say;
 use super::super::{Outcome, SourceArgs};
 use super::interrupted;
+use crate::config::Configuration;
 use crate::error::GenError;
 use crate::number::decimal_if;
 use crate::virtual_card::{serve, Door, VirtualCard, VirtualConfig, CABLE_M};
@@ -34,6 +35,9 @@ pub struct CardArgs {
     /// Turns per second of the shafts [default: 0.25]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     speed: Option<String>,
+    /// Make the sets of the stream by arithmetic, in real time: to see what a host does with as many as a real card sends
+    #[arg(long)]
+    load: bool,
     /// Stop after so many seconds [default: at Ctrl-C]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seconds: Option<String>,
@@ -58,9 +62,31 @@ fn usual_door() -> Result<Door, GenError> {
     ))
 }
 
+/// How a host's words come to a card without a UART.
+fn way_in(configuration: &Configuration) -> Option<String> {
+    let told = match configuration {
+        Configuration::Receiver(_) => {
+            "host.bus = \"dsp\": words 0 to 7 of the port are its addresses, each an access over the pins; it has no registers of a card"
+        }
+        Configuration::Card(project) => match project.bus {
+            HostBus::Uart => return None,
+            HostBus::Bare => {
+                "host.bus = \"none\": the virtual card has a UART and the registers of a card, so that somebody can look"
+            }
+            bus => {
+                let name = bus.name();
+                return Some(format!(
+                    "host.bus = \"{name}\": a controller on that bus does what the host asks for, each word an access over the pins"
+                ));
+            }
+        },
+    };
+    Some(told.into())
+}
+
 /// Runs the command.
 pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
-    let project = arguments.source.load()?;
+    let configuration = arguments.source.load_any()?;
     let within = |flag, text, usual, most| -> Result<f64, GenError> {
         Ok(decimal_if(flag, text, 0.0..=most)?.unwrap_or(usual))
     };
@@ -74,6 +100,7 @@ pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
             VirtualConfig::default().speed,
             SPEED_MAX,
         )?,
+        makes_sets: arguments.load,
         ..VirtualConfig::default()
     };
     let seconds = decimal_if("--seconds", &arguments.seconds, 0.0..=1e9)?;
@@ -82,21 +109,22 @@ pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
         Some(address) => Door::tcp(address)?,
         None => usual_door()?,
     };
-    let mut card = VirtualCard::new(&project, &config)?;
+    let (mut card, name) = match &configuration {
+        Configuration::Card(project) => (VirtualCard::new(project, &config)?, &project.name),
+        Configuration::Receiver(receiver) => {
+            (VirtualCard::of_receiver(receiver, &config)?, &receiver.name)
+        }
+    };
     // The one line that a program which starts this one reads.
     let mut stdout = std::io::stdout();
     let _ = writeln!(stdout, "{}", door.name());
     let _ = stdout.flush();
     say(&format!(
-        "virtual card {} at {}: simulated, nothing is measured; Ctrl-C ends it",
-        project.name,
+        "virtual card {name} at {}: simulated, nothing is measured; Ctrl-C ends it",
         door.name()
     ));
-    if project.bus != HostBus::Uart {
-        say(&format!(
-            "host.bus = \"{}\": the virtual card has a UART in its place, the registers are the same",
-            project.bus.name()
-        ));
+    if let Some(told) = way_in(&configuration) {
+        say(&told);
     }
     let stop = interrupted();
     let mut is_first = true;
