@@ -146,7 +146,12 @@ fn the_tutorial_works_as_it_stands() {
     if !tools::require("bash", "the tutorial") {
         return;
     }
-    let text = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let mut text = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    if !tools::is_whole() {
+        // Of its hour a minute.
+        text = text.replace("--samples 36000000", "--samples 600000");
+        text = text.replace("--from 1800 --to 1802", "--from 30 --to 32");
+    }
     let folder = Dir::new("tutorial");
     let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
     let mut script = String::from("set -e\ntrap 'kill $(jobs -p); wait' EXIT\n");
@@ -178,7 +183,12 @@ fn the_tutorial_works_as_it_stands() {
         assert!(told.contains(words), "{words}\n{told}");
     }
     assert!(told.contains("held: ") || told.contains("none: "), "{told}");
-    for file in ["angles.parquet", "angles.svg", "out/mine/mine.v"] {
+    for file in [
+        "angles.parquet",
+        "angles.svg",
+        "hour.svg",
+        "out/mine/mine.v",
+    ] {
         assert!(folder.0.join(file).exists(), "{file}\n{told}");
     }
 }

@@ -1,5 +1,6 @@
 //! `build` and `flash`: the bitstream of a card on a board, and the command that loads it.
 
+use super::colour;
 use super::work::Steps;
 use super::{to_json, EmissionArgs, Outcome};
 use crate::artifact::{self, Artifact};
@@ -151,7 +152,7 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     let is_met = report.best.is_met;
     let stdout = match arguments.json {
         true => to_json(&report)?,
-        false => report.to_string(),
+        false => colour::verdicts(&report.to_string(), &["timing met"], &["timing NOT met"]),
     };
     let seeds = match maker {
         Maker::Open(_) => ", more --seeds",

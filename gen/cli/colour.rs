@@ -23,6 +23,21 @@ pub fn doubtful(text: impl Display) -> String {
     painted(text, of(AnsiColor::Yellow))
 }
 
+/// Something is wrong.
+pub fn bad(text: impl Display) -> String {
+    painted(text, of(AnsiColor::Red))
+}
+
+/// A text in which these words say that all is well, and those that something is wrong.
+pub fn verdicts(text: &str, all_is_well: &[&str], is_wrong: &[&str]) -> String {
+    let well = all_is_well.iter().map(|word| (word, good(word)));
+    let wrong = is_wrong.iter().map(|word| (word, bad(word)));
+    well.chain(wrong)
+        .fold(text.to_owned(), |text, (word, told)| {
+            text.replace(word, &told)
+        })
+}
+
 /// The same text without colour.
 pub fn plain(text: &str) -> String {
     match text.contains('\x1b') {
@@ -69,8 +84,7 @@ mod tests {
 
     #[test]
     fn what_is_painted_is_the_same_text_where_colour_is_not_wanted() {
-        let bad = painted("fails", of(AnsiColor::Red));
-        let text = format!("{}, {bad}\n", good("holds"));
+        let text = verdicts("holds, fails\n", &["holds"], &["fails"]);
         assert_eq!(text, "\x1b[32mholds\x1b[0m, \x1b[31mfails\x1b[0m\n");
         for (is_wanted, seen) in [(true, text.as_str()), (false, "holds, fails\n")] {
             let mut out = Vec::new();

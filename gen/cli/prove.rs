@@ -1,5 +1,6 @@
 //! `prove`: proves what the blocks of a card promise, on its Verilog.
 
+use super::colour;
 use super::work::Steps;
 use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
@@ -71,7 +72,7 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
     drop(steps);
     let stdout = match arguments.json {
         true => to_json(&report)?,
-        false => report.to_string(),
+        false => verdicts(&report.to_string()),
     };
     let failed = (report.parts.iter()).flat_map(|p| p.rows.iter().map(move |row| (p, row)));
     let failed = failed.filter(|(_, row)| row.verdict.is_failure());
@@ -86,6 +87,12 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
         messages: messages.collect(),
         exit_code: u8::from(!report.is_good()),
     })
+}
+
+/// A report in colour: in its table, and at the end of what is said of frames.
+fn verdicts(report: &str) -> String {
+    let well = [" proved     ", ": proved ("];
+    colour::verdicts(report, &well, &["VIOLATED", "NOT PROVED"])
 }
 
 /// What is proved of a configuration.
@@ -112,7 +119,7 @@ fn frames(
     }
     let stdout = match arguments.json {
         true => to_json(&report)?,
-        false => report.to_string(),
+        false => verdicts(&report.to_string()),
     };
     let broken = report.broken.iter();
     let messages: Vec<String> = broken

@@ -30,7 +30,11 @@ fn is_t_format_device(name: &str) -> bool {
 }
 
 /// The device that `--encoder` asks for on a channel. One for all is one for those that speak its protocol.
-pub(super) fn wanted<'a>(project: &Project, channel: usize, devices: &'a [String]) -> Option<&'a str> {
+pub(super) fn wanted<'a>(
+    project: &Project,
+    channel: usize,
+    devices: &'a [String],
+) -> Option<&'a str> {
     let is_t_format = |n: usize| !project.card.channels[n].is_endat();
     match devices {
         [one] if one != NO_DEVICE => {
@@ -128,4 +132,3 @@ pub(super) fn t_format_link(
     }
     Ok(link)
 }
-

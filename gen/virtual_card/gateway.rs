@@ -243,7 +243,10 @@ impl Gateway {
         self.looked = card.cycle();
         let bytes = self.words.read(card, at(&CARD, "stream_state"), 1, true)[0] & 0xFFFF;
         let count = (bytes as usize).div_ceil(4);
-        for word in self.words.read(card, at(&CARD, "stream_data"), count, false) {
+        for word in self
+            .words
+            .read(card, at(&CARD, "stream_data"), count, false)
+        {
             for byte in word.to_be_bytes() {
                 match (byte, self.frame.is_empty()) {
                     // Bytes that are not there are zeros, too.

@@ -31,10 +31,10 @@ use crate::error::GenError;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::service_times;
 use endat_hdl::endat::service::program::ServiceTimes;
+use endat_hdl::t_format::protocol::SYSTEM_HZ as RECEIVER_HZ;
 use endat_host::owner::AnyCard;
 use endat_host::transport::Port;
 use endat_host::{Bridge, HostError, Transport};
-use endat_hdl::t_format::protocol::SYSTEM_HZ as RECEIVER_HZ;
 use endat_sim::bench::{Bench, Link, PinNames, Uart};
 use endat_sim::encoder::{LatchEdge, PositionSource};
 use endat_sim::line::{Jitter, LineConfig};
@@ -198,8 +198,7 @@ fn plug(
     if is_open {
         encoder.unplugged.push(0..Time::MAX);
     }
-    let mut line =
-        LineConfig::cable(config.cable_m).seed(config.seed.wrapping_add(channel as u64));
+    let mut line = LineConfig::cable(config.cable_m).seed(config.seed.wrapping_add(channel as u64));
     line.data_in.jitter = jitter(config);
     let link = Link::new(line, encoder);
     Ok((PortOf::Endat(bench.add_endat(&pins, link)), motion))
@@ -261,9 +260,7 @@ impl VirtualCard {
         });
         let host = match Words::of(bus) {
             None => HostEnd::Uart(Uart::new(&mut bench, card.uart_bit_cycles)),
-            Some(words) => {
-                HostEnd::Gateway(Gateway::new(words, &mut bench, LINK_TIMEOUT_US, sets))
-            }
+            Some(words) => HostEnd::Gateway(Gateway::new(words, &mut bench, LINK_TIMEOUT_US, sets)),
         };
         Ok(Self::powered(bench, host, ports, jitter(config)))
     }
@@ -281,12 +278,7 @@ impl VirtualCard {
         let wanted = config.encoders.first().map(String::as_str);
         let link = t_format_link(receiver.bit_hz(), 0, wanted, config)?;
         bench.add_t_format(&PinNames::receiver(), link);
-        let host = HostEnd::Gateway(Gateway::new(
-            Words::Dsp,
-            &mut bench,
-            LINK_TIMEOUT_US,
-            None,
-        ));
+        let host = HostEnd::Gateway(Gateway::new(Words::Dsp, &mut bench, LINK_TIMEOUT_US, None));
         let ports = vec![PortOf::TFormat(0)];
         Ok(Self::powered(bench, host, ports, jitter(config)))
     }

@@ -6,7 +6,9 @@
 mod columns;
 mod edges;
 mod groups;
+mod histogram;
 mod map;
+mod opening;
 mod overview;
 mod rows;
 mod scale;
@@ -25,7 +27,8 @@ use crate::{
     segments::{data_segments, first_falls, By, Level, Meaning, Segment},
     Time, US,
 };
-pub use edges::{edges_svg, Edges};
+pub use edges::Edges;
+pub use histogram::edges_svg;
 pub use map::map_svg;
 pub use overview::overview_svg;
 pub use series::{series_svg, Lane, Series};

@@ -1,6 +1,6 @@
 //! `read`: the latest positions, once.
 
-use super::super::{to_json, Outcome};
+use super::super::{colour, to_json, Outcome};
 use super::{settled, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
@@ -84,6 +84,17 @@ pub fn verdict(reading: &Reading) -> String {
     }
 }
 
+/// The same with its colour.
+fn painted_verdict(reading: &Reading) -> String {
+    let told = verdict(reading);
+    match (reading.fresh && !is_old(reading), reading.cause) {
+        (true, 0) => colour::good(told),
+        (true, _) => colour::doubtful(told),
+        (false, _) if reading.has_come() => colour::bad(told),
+        _ => colour::doubtful(told),
+    }
+}
+
 /// Runs the command.
 pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let mut card = arguments.port.open()?;
@@ -135,7 +146,7 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
                 "{channel:>7}  {:<24} {raw:>16}  {:>9}  {}",
                 shown(r, scale),
                 r.age_us,
-                verdict(r)
+                painted_verdict(r)
             );
         }
         text

@@ -385,7 +385,7 @@ function margins() {
   $("margin").replaceChildren(...card.channels.flatMap((channel, n) => {
     if (channel.protocol !== "EnDat") return [];
     const image = make("img");
-    image.alt = `Where the edges of DATA are, channel ${n}`;
+    image.alt = `Where the edges of DATA are, and how far its eye is open, channel ${n}`;
     image.dataset.channel = n;
     return [image];
   }));
