@@ -7,7 +7,7 @@ use endat_hdl::config::CHANNELS;
 use endat_host::did_you_mean;
 use endat_sim::encoder::{Cause, Defect};
 use endat_sim::line::{FaultKind, GlitchRate, Jitter, LineFault, Wire};
-use endat_sim::{Time, MS, NS, US};
+use endat_sim::{t_format, Time, MS, NS, US};
 
 /// What can be made, what it takes, and what it is.
 pub const FAULTS: [(&str, &str, &str); 13] = [
@@ -24,6 +24,19 @@ pub const FAULTS: [(&str, &str, &str); 13] = [
     ("jitter", "CHANNEL TIME", "edges come up to so much earlier or later, as in 20ns, until heal"),
     ("line", "CHANNEL KIND", "a fault of the pair, until heal: stuck_low, stuck_high, open, short, swapped, data_to_clock, noise, glitches"),
     ("heal", "CHANNEL", "all of these are gone, the plug is in"),
+];
+
+/// What a T-format encoder and its line can do of it.
+const T_FORMAT_FAULTS: [&str; 9] = [
+    "unplug",
+    "plug",
+    "crc",
+    "silent",
+    "slow",
+    "alarm (bits to 255)",
+    "jitter",
+    "line stuck_low or open",
+    "heal",
 ];
 
 /// What is to be done to a channel.
@@ -184,29 +197,79 @@ impl VirtualCard {
             let last = self.ports.len() - 1;
             return Err(format!("channel = {}: outside 0..{last}", fault.channel));
         };
-        match (port, fault.deed) {
-            (PortOf::TFormat(index), Deed::Supply(on)) => {
-                let link = self.bench.t_format_mut(index);
-                if on {
-                    link.plug()
-                } else {
-                    link.unplug()
-                }
+        match port {
+            PortOf::TFormat(index) => {
+                self.disturb_t_format(index, fault.deed).ok_or_else(|| {
+                    format!(
+                        "channel = {}: speaks T-format, which knows {} only",
+                        fault.channel,
+                        T_FORMAT_FAULTS.join(", ")
+                    )
+                })?
             }
-            (PortOf::TFormat(index), Deed::Heal) => self.bench.t_format_mut(index).plug(),
-            (PortOf::TFormat(_), _) => {
-                return Err(format!(
-                    "channel = {}: speaks T-format, which knows unplug, plug and heal only",
-                    fault.channel
-                ));
-            }
-            (PortOf::Endat(index), deed) => self.disturb(index, deed, now, seed),
+            PortOf::Endat(index) => self.disturb(index, fault.deed, now, seed),
         }
         let seconds = now as f64 / super::SECOND;
         Ok(format!(
             "{} at {seconds:.6} s of the card's time",
             words.join(" ")
         ))
+    }
+
+    /// None if there is no such fault of a T-format encoder.
+    fn disturb_t_format(&mut self, index: usize, deed: Deed) -> Option<()> {
+        let link = self.bench.t_format_mut(index);
+        let until = |replies| Some(link.encoder().requests().len() as u64 + replies);
+        let (ends, defect) = match deed {
+            // Of a position: only the CRC tells.
+            Deed::Spoil(replies, Defect::CrcXor(_)) => {
+                let flip = t_format::Defect::Flip { field: 2, bit: 0 };
+                (until(replies), flip)
+            }
+            Deed::Spoil(replies, Defect::NoStartBit) => (until(replies), t_format::Defect::Silent),
+            Deed::Line(FaultKind::StuckLow) => (None, t_format::Defect::StuckLow),
+            _ => {
+                match deed {
+                    Deed::Supply(true) => link.plug(),
+                    Deed::Supply(false) | Deed::Line(FaultKind::Open) => link.unplug(),
+                    Deed::Slow(by) => {
+                        link.encoder_mut().config.reply_gap = self.sound[index].reply_gap + by;
+                    }
+                    Deed::Jitter(most) => link.encoder_mut().config.jitter = most,
+                    Deed::Status {
+                        alarms,
+                        warnings: 0,
+                    } if alarms <= 0xFF => {
+                        link.encoder_mut().config.alarm |= alarms as u8;
+                    }
+                    Deed::Heal => {
+                        link.plug();
+                        link.encoder_mut().config = self.sound[index].clone();
+                        self.spoiled.retain(|s| s.index != index);
+                    }
+                    _ => return None,
+                }
+                return Some(());
+            }
+        };
+        link.encoder_mut().config.defect = defect;
+        self.spoiled.retain(|s| s.index != index);
+        self.spoiled
+            .extend(ends.map(|requests| Spoiled { index, requests }));
+        Some(())
+    }
+
+    /// Ends what was to spoil some replies of T-format encoders only.
+    pub(super) fn mend(&mut self) {
+        let bench = &mut self.bench;
+        self.spoiled.retain(|spoiled| {
+            let encoder = bench.t_format_mut(spoiled.index).encoder_mut();
+            let goes_on = (encoder.requests().len() as u64) < spoiled.requests;
+            if !goes_on {
+                encoder.config.defect = t_format::Defect::None;
+            }
+            goes_on
+        });
     }
 
     fn disturb(&mut self, index: usize, deed: Deed, now: Time, seed: u64) {
@@ -261,6 +324,13 @@ pub(super) enum PortOf {
     Endat(usize),
     /// T-format.
     TFormat(usize),
+}
+
+/// A T-format encoder whose replies are spoilt until it has heard so many requests.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spoiled {
+    index: usize,
+    requests: u64,
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub use faults::{Fault, FAULTS};
 pub use serve::{serve, Door, Pace, CONTROL};
 
 use encoders::{encoder, motion, t_format_link, t_format_motion, wanted, NO_DEVICE};
-use faults::PortOf;
+use faults::{PortOf, Spoiled};
 use gateway::Gateway;
 use host_end::HostEnd;
 use sets::{Motion, Sets};
@@ -38,7 +38,7 @@ use endat_host::{Bridge, HostError, Transport};
 use endat_sim::bench::{Bench, Link, PinNames, Uart};
 use endat_sim::encoder::{LatchEdge, PositionSource};
 use endat_sim::line::{Jitter, LineConfig};
-use endat_sim::{Time, MS, NS, US};
+use endat_sim::{t_format, Time, MS, NS, US};
 use rtl_design::elaborate::Design;
 use rtl_design::engine::Compiled;
 use std::borrow::Cow;
@@ -100,6 +100,9 @@ pub struct VirtualCard {
     ports: Vec<PortOf>,
     /// What it is where nobody has made it worse.
     jitter: Jitter,
+    /// The T-format encoders as they were, and those whose next replies are spoilt.
+    sound: Vec<t_format::EncoderConfig>,
+    spoiled: Vec<Spoiled>,
 }
 
 /// What a port begins with that is simulated in this process; `load` is a card whose sets of the stream are made.
@@ -290,8 +293,12 @@ impl VirtualCard {
         jitter: Jitter,
     ) -> Self {
         let cycles_per_us = (bench.system_hz() / 1_000_000).max(1);
+        let t_format = (0..bench.t_format_count()).map(|n| bench.t_format(n).encoder());
+        let sound = t_format.map(|encoder| encoder.config.clone()).collect();
         bench.power_up();
         Self {
+            sound,
+            spoiled: Vec::new(),
             bench,
             host,
             cycles_per_us,
@@ -305,6 +312,9 @@ impl VirtualCard {
         let end = self.bench.cycle() + cycles;
         while self.bench.cycle() < end {
             self.host.step(&mut self.bench);
+            if !self.spoiled.is_empty() {
+                self.mend();
+            }
         }
     }
 

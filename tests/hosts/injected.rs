@@ -195,3 +195,52 @@ fn the_drawing_of_a_rehearsal_shows_gaps_and_causes() {
         "UPDATE_EXPECT=1 draws docs/recording.svg again"
     );
 }
+
+/// Catches a fault of a T-format encoder that is none, another one, or does not end.
+#[test]
+fn a_t_format_encoder_takes_faults_and_heals() {
+    let project = super::changed(
+        "mixed_protocols",
+        &[
+            ("fifo_bytes = 0", "fifo_bytes = 2048"),
+            ("sample_hz = 10_000", "sample_hz = 5_000"),
+        ],
+    );
+    let mut card = super::found(&project);
+    let mut feed = Feed::begin(&mut card, false).unwrap();
+    let mut rows = VecDeque::new();
+    let mut next = |card: &mut Card<_>, count: usize| -> Vec<&'static str> {
+        rows.clear();
+        // Behind what was on its way when the fault was made.
+        while rows.len() < count + 10 {
+            feed.fill(card, &mut rows, Duration::from_millis(1))
+                .unwrap();
+        }
+        assert!(rows.iter().all(|r| r.cells[0].fresh), "the other channel");
+        rows.iter().map(|row| row.cells[1].cause).collect()
+    };
+    for (words, cause, times) in [
+        ("crc 1 3", "reply_crc", Some(3)),
+        ("silent 1 2", "no_answer", Some(2)),
+        ("slow 1 60us", "no_answer", None),
+        ("line 1 stuck_low", "line_not_idle", None),
+        ("line 1 open", "no_answer", None),
+        ("unplug 1", "no_answer", None),
+        ("alarm 1 4", "counting_error", None),
+    ] {
+        card.bridge().transport().inject(words).unwrap();
+        let causes = next(&mut card, 20);
+        let count = causes.iter().filter(|c| **c == cause).count();
+        let is_so = times.map_or(count > 15, |times| count == times);
+        assert!(is_so, "{words}: {causes:?}");
+        card.bridge().transport().inject("heal 1").unwrap();
+        next(&mut card, 5);
+        assert_eq!(next(&mut card, 5), ["none"; 15], "{words}");
+    }
+    card.bridge().transport().inject("jitter 1 20ns").unwrap();
+    assert!(next(&mut card, 5).iter().all(|cause| *cause == "none"));
+    for words in ["f1 1", "warning 1", "noise 1 1e-3", "line 1 short"] {
+        let error = card.bridge().transport().inject(words).unwrap_err();
+        assert!(error.contains("speaks T-format, which knows unplug, plug, crc"));
+    }
+}
