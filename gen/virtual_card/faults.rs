@@ -39,6 +39,9 @@ const T_FORMAT_FAULTS: [&str; 9] = [
     "heal",
 ];
 
+/// Bits of ALMC that a bit of the status field tells, too: counting error; multi-turn and battery.
+const ALARMS: [(u16, u8); 2] = [(0x04, 1 << 4), (0xE0, 1 << 5)];
+
 /// What is to be done to a channel.
 #[derive(Clone, Debug, PartialEq)]
 enum Deed {
@@ -240,7 +243,12 @@ impl VirtualCard {
                         alarms,
                         warnings: 0,
                     } if alarms <= 0xFF => {
-                        link.encoder_mut().config.alarm |= alarms as u8;
+                        let config = &mut link.encoder_mut().config;
+                        config.alarm |= alarms as u8;
+                        // The status field sums them up.
+                        for (bits, status) in ALARMS {
+                            config.status |= if alarms & bits == 0 { 0 } else { status };
+                        }
                     }
                     Deed::Heal => {
                         link.plug();
