@@ -110,10 +110,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         &dir.write("fast.toml", fast.as_bytes()),
     ]);
     // Commands that take a card say so.
-    let found = bad(
-        &["card", "--preset", "async_dsp", "--tcp", "127.0.0.1:0"],
-        2,
-    );
+    let found = bad(&["read", "--port", "virtual:async_dsp"], 2);
     let told = "is a T-format receiver, and this command works on cards; use emit or explain";
     assert!(found.contains(told), "{found}");
 }
