@@ -21,8 +21,6 @@ const ANSWER: u8 = 0xFF;
 /// Bits of `card.stream_control`.
 const COLLECT: u32 = 1;
 const PUSH: u32 = 2;
-/// Word addresses of a card.
-const ADDRESSES: u32 = 0x800;
 /// Behind the last result word.
 const RESULTS_END: u16 = RESULT_BASE + BLOCK_STRIDE * CHANNELS_MAX as u16;
 /// Time between two looks at the stream's buffer, in microseconds.
@@ -154,6 +152,8 @@ impl Gateway {
                     self.write(card, address.wrapping_add(step), word(bytes));
                 }
             }
+            // No word is no answer.
+            _ if count == 0 => {}
             code => {
                 let words = self.read(card, address, count, code == 2);
                 if self.marks {
@@ -167,7 +167,7 @@ impl Gateway {
     }
 
     fn write(&mut self, card: &mut Bench<Compiled>, address: u32, word: u32) {
-        let Some(place) = (address < ADDRESSES).then_some(address as u16) else {
+        let Some(place) = (address < self.words.addresses()).then_some(address as u16) else {
             return;
         };
         if self.words != Words::Dsp && place == at(&CARD, "stream_control") {
@@ -190,10 +190,18 @@ impl Gateway {
         count: usize,
         rises: bool,
     ) -> Vec<u32> {
-        if address >= ADDRESSES {
+        // Behind the last address nothing is asked for, so that no bus begins anew there.
+        let there = self.words.addresses().saturating_sub(address) as usize;
+        let asked = if rises || there == 0 {
+            count.min(there)
+        } else {
+            count
+        };
+        if asked == 0 {
             return vec![0; count];
         }
-        let mut words = self.burst(card, address as u16, count, rises);
+        let mut words = self.burst(card, address as u16, asked, rises);
+        words.resize(count, 0);
         let place = |name| {
             let back = usize::from(at(&CARD, name)).checked_sub(address as usize)?;
             (back < count && (rises || back == 0)).then_some(back)
@@ -226,7 +234,7 @@ impl Gateway {
         }
         let hold = at(&CARD_CONFIG, "hold");
         let was = words.read(card, hold, 1, true)[0];
-        words.write(card, hold, 1);
+        words.write(card, hold, was | 1);
         let held = words.read(card, address, count, rises);
         words.write(card, hold, was);
         held

@@ -270,6 +270,12 @@ impl VirtualCard {
 
     /// A T-format receiver for a signal processor, which a controller sits at: its addresses, and no registers of a card.
     pub fn of_receiver(receiver: &Receiver, config: &VirtualConfig) -> Result<Self, GenError> {
+        if config.encoders.len() > 1 {
+            return Err(GenError::input(format!(
+                "--encoder: given {} times; a receiver has one line: give one",
+                config.encoders.len()
+            )));
+        }
         if config.makes_sets {
             return Err(GenError::input(format!(
                 "receiver {}: has no stream whose sets could be made; take the configuration of a card",

@@ -1,6 +1,7 @@
 //! A controller at the pins of each bus: what it reads and writes, in words.
 
 use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::uart_bridge::ADDRESS_BITS;
 use endat_sim::bench::Bench;
 use rtl_design::engine::Compiled;
 
@@ -73,6 +74,14 @@ impl Words {
             HostBus::Parallel => Self::Parallel,
             HostBus::Uart | HostBus::Bare => return None,
         })
+    }
+
+    /// How many words there are; what is beyond reads as 0.
+    pub const fn addresses(self) -> u32 {
+        match self {
+            Self::Dsp => 1 << 3,
+            _ => 1 << ADDRESS_BITS,
+        }
     }
 
     /// Puts the pins to rest.

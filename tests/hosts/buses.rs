@@ -50,6 +50,7 @@ fn a_host_does_over_every_bus_what_it_does_over_a_uart() {
         assert_eq!(card.read(&period).unwrap(), written, "{bus:?}");
         assert_eq!(card.bridge().read(0x7FF, 1).unwrap(), [0]);
         assert_eq!(card.bridge().read(0xF000, 1).unwrap(), [0]);
+        assert_eq!(card.bridge().read(0x7FF, 2).unwrap(), [0, 0], "{bus:?}");
         // A word of the encoder's memory goes there and back.
         card.write_parameter(0, 0xA7, 3, 0x1234).unwrap();
         let answer = card.read_parameter(0, 0xA7, 3).unwrap();
@@ -140,6 +141,13 @@ fn the_receiver_of_a_signal_processor_is_read_by_its_addresses() {
         let seconds = card.now() as f64 / (1_000.0 * MS as f64);
         assert!((0.1..0.1001 + 0.25 * seconds).contains(&turns), "{turns}");
         assert_eq!(w4 & 0xFF, 0);
+        // Nothing is behind them, and nobody writes there: word 8 would be request 3 again.
+        let requests = |card: &mut VirtualCard| card.bench().t_format(0).encoder().requests().len();
+        let before = requests(&mut card);
+        assert!(answer(&mut card, &[1, 1, 0, 0, 0, 8, 0, 0, 0, 3]).is_empty());
+        let bytes = answer(&mut card, &[2, 2, 0, 0, 0, 7]);
+        assert_eq!((bytes.len(), &bytes[4..]), (8, [0; 4].as_slice()));
+        assert_eq!(requests(&mut card), before);
         let violations = card.bench().t_format(0).encoder().violations();
         assert!(violations.is_empty(), "{violations:?}");
     }
