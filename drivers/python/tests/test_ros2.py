@@ -22,6 +22,11 @@ pytest.importorskip("cyclonedds")
 rosbags = pytest.importorskip("rosbags.typesys")
 #: No other test's, and hardly a robot's.
 DOMAIN = 97
+#: On this machine alone, whatever networks it has.
+LOOPBACK = """<CycloneDDS><Domain><General>
+<Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces><AllowMulticast>false</AllowMulticast>
+</General><Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
+</Domain></CycloneDDS>"""
 
 
 @pytest.fixture(scope="module")
@@ -35,12 +40,15 @@ def example() -> Any:
     return module
 
 
-def test_another_participant_takes_joints_of_the_card_in_radians(example: Any, service: str) -> None:
+def test_another_participant_takes_joints_of_the_card_in_radians(
+    example: Any, service: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Catches another name of topic or type, another unit, and joints in another order."""
     from cyclonedds.domain import DomainParticipant
     from cyclonedds.sub import DataReader, Subscriber
     from cyclonedds.topic import Topic
 
+    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
     participant = DomainParticipant(DOMAIN)
     topic = Topic(participant, "rt/joint_states", example.JointState, qos=example.QOS)
     assert topic.typename == "sensor_msgs::msg::dds_::JointState_"
