@@ -2,6 +2,7 @@
 //! is here besides is which keys go together, as far as a schema can say it. Where it says less than the reader, the reader decides.
 
 use crate::board::BOARD_KEYS;
+use crate::config::base;
 use crate::config::keys::*;
 use crate::config::words::{RECEIVER_BUS, T_FORMAT};
 use crate::form::key::{Key, Kind, Usual};
@@ -229,19 +230,21 @@ fn card_rules() -> Value {
         .collect();
     let internal = HostBus::ALL.iter().filter(|bus| bus.is_internal());
     let internal: Vec<&str> = internal.map(|bus| bus.name()).collect();
-    let with_address: Vec<&str> = (internal.iter().copied())
-        .filter(|bus| *bus != HostBus::Bare.name())
-        .collect();
-    let without = |key: &Key| json!({"properties": {"host": {"properties": none_of([key.name])}}});
+    let only_with = |key: &Key| {
+        let takers = HostBus::ALL.iter().filter(|bus| base::takes(**bus, key));
+        let takers: Vec<&str> = takers.map(|bus| bus.name()).collect();
+        let without = json!({"properties": {"host": {"properties": none_of([key.name])}}});
+        json!({"if": bus_is(&takers), "then": true, "else": without})
+    };
     json!({
         "required": ["clock", "trigger"],
         "properties": {CHANNELS: {"items": channel}},
         "anyOf": [common, each],
         "allOf": [
-            {"if": bus_is(&others), "then": {"properties": none_of(["link"])}, "else": {"required": ["link", "board"]}},
+            {"if": bus_is(&others), "then": {"properties": none_of(["link"])}, "else": {"required": ["link"]}},
             {"if": bus_is(&internal), "then": {"properties": none_of(["board", "pins"])}},
-            {"if": bus_is(&with_address), "then": true, "else": without(&BASE_ADDRESS)},
-            {"if": bus_is(&[HostBus::Spi.name()]), "then": true, "else": without(&SCK_HZ)},
+            only_with(&BASE_ADDRESS),
+            only_with(&SCK_HZ),
             {"if": bus_is(&[HostBus::Bare.name()]), "then": {"properties": {CHANNELS: {"maxItems": 1}}}},
         ],
     })

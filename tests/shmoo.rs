@@ -156,7 +156,7 @@ fn wrong_axes_are_told_with_their_limits() {
         (vec!["--bits", "49"], "--bits = 49: outside 1..48"),
         (
             vec!["--system-hz", "1"],
-            "--system-hz = 1: outside 8000000..250000000",
+            "--system-hz = 1: outside 1000000..250000000",
         ),
     ] {
         let message = bad(&[&["shmoo"], &arguments[..]].concat(), 2);

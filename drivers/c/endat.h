@@ -200,7 +200,8 @@ endat_error endat_read_state(const endat_card *card, uint32_t channel, endat_sta
 endat_error endat_status(const endat_card *card, uint32_t channel);
 
 /**
- * Waits until a channel takes triggers: after power-up, and after its encoder has been plugged in again, which the card notices itself.
+ * Waits until a channel is initialised: after power-up, and after its encoder has been plugged in again, which the card notices itself.
+ * Behind a frame without an answer a channel takes no trigger for 30 ms; a measurement of that time ends with ENDAT_ERROR_TIMEOUT.
  * An initialisation takes some two seconds, twice that if a step fails. At the limit: ENDAT_ERROR_UNPLUGGED or ENDAT_ERROR_TIMEOUT.
  */
 endat_error endat_wait_ready(const endat_card *card, uint32_t channel, uint32_t limit_ms);
@@ -231,7 +232,7 @@ const char *endat_plate_text(uint32_t number);
 
 /** What came back. */
 typedef struct {
-    uint8_t refusal;  /**< Why it was not fulfilled, 0 = it was: endat_refusal_text(). */
+    uint8_t refusal;  /**< With ENDAT_ERROR_REFUSED: why it was not fulfilled: endat_refusal_text(). 0 with all else. */
     uint8_t address;  /**< Echo of MRS code or address, or WRN, RM, Busy, I4..I0 of additional data 1. */
     uint16_t data;    /**< Data. */
     uint64_t bits;    /**< The whole answer. */
@@ -247,7 +248,7 @@ typedef struct {
 /**
  * Sends a mode command with its parameter, and does not wait. EnDat 2.2 commands ride on the next trigger.
  * @param card the card.
- * @param request what endat_request_end() asks for.
+ * @param request what endat_request_poll() asks for.
  * @param channel encoder port.
  * @param command ENDAT_MAP_SERVICE_REQUEST_COMMAND_...
  * @param address MRS code, address or port.

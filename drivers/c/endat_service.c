@@ -14,6 +14,10 @@
 /** Requests are counted up to it, and then from 0 on. */
 #define FINISHED_MAX (ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED_MASK >> ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED_SHIFT)
 
+/** Largest MRS code, address or port, and largest data of a command. */
+#define ADDRESS_MAX (ENDAT_MAP_SERVICE_REQUEST_ADDRESS_MASK >> ENDAT_MAP_SERVICE_REQUEST_ADDRESS_SHIFT)
+#define DATA_MAX (ENDAT_MAP_SERVICE_REQUEST_DATA_MASK >> ENDAT_MAP_SERVICE_REQUEST_DATA_SHIFT)
+
 /* The words of a list follow each other: if not, this does not compile. */
 typedef char endat_list_follows[((ENDAT_MAP_SERVICE_LIST_7_WORD(0u) - ENDAT_MAP_SERVICE_LIST_0_WORD(0u)) == 7u) ? 1 : -1];
 typedef char endat_slots_follow[((ENDAT_MAP_SERVICE_SLOT_7_WORD(0u) - ENDAT_MAP_SERVICE_SLOT_0_WORD(0u)) == 7u) ? 1 : -1];
@@ -179,7 +183,7 @@ endat_error endat_request_begin(const endat_card *card, endat_request *request, 
     uint32_t word = 0u;
     endat_error error = endat_needs_service(card, channel);
 
-    if ((error == ENDAT_OK) && ((command > 0x3Fu) || (address > 0xFFu) || (data > 0xFFFFu))) {
+    if ((error == ENDAT_OK) && ((command > 0x3Fu) || (address > ADDRESS_MAX) || (data > DATA_MAX))) {
         error = ENDAT_ERROR_ARGUMENT;
     }
     if (error == ENDAT_OK) {
@@ -289,26 +293,29 @@ endat_error endat_select_memory(const endat_card *card, uint32_t channel, uint32
     return endat_send(card, channel, ENDAT_MAP_SERVICE_REQUEST_COMMAND_SELECT_MEMORY, mrs, block, limit_ms, answer);
 }
 
+/** Selects an area of the memory, and sends a command for a word in it. */
+static endat_error in_memory(const endat_card *card, uint32_t channel, uint32_t mrs, uint32_t command, uint32_t address, uint32_t data,
+                             uint32_t limit_ms, endat_answer *answer)
+{
+    endat_error error = ENDAT_OK;
+
+    /* A wrong argument is refused with the command, and selects nothing before. */
+    if ((address <= ADDRESS_MAX) && (data <= DATA_MAX)) {
+        error = endat_select_memory(card, channel, mrs, 0u, limit_ms, answer);
+    }
+    return (error == ENDAT_OK) ? endat_send(card, channel, command, address, data, limit_ms, answer) : error;
+}
+
 endat_error endat_read_parameter(const endat_card *card, uint32_t channel, uint32_t mrs, uint32_t address, uint32_t limit_ms,
                                  endat_answer *answer)
 {
-    endat_error error = endat_select_memory(card, channel, mrs, 0u, limit_ms, answer);
-
-    if (error == ENDAT_OK) {
-        error = endat_send(card, channel, ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_PARAMETER, address, 0u, limit_ms, answer);
-    }
-    return error;
+    return in_memory(card, channel, mrs, ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_PARAMETER, address, 0u, limit_ms, answer);
 }
 
 endat_error endat_write_parameter(const endat_card *card, uint32_t channel, uint32_t mrs, uint32_t address, uint32_t data,
                                   uint32_t limit_ms, endat_answer *answer)
 {
-    endat_error error = endat_select_memory(card, channel, mrs, 0u, limit_ms, answer);
-
-    if (error == ENDAT_OK) {
-        error = endat_send(card, channel, ENDAT_MAP_SERVICE_REQUEST_COMMAND_RECEIVE_PARAMETER, address, data, limit_ms, answer);
-    }
-    return error;
+    return in_memory(card, channel, mrs, ENDAT_MAP_SERVICE_REQUEST_COMMAND_RECEIVE_PARAMETER, address, data, limit_ms, answer);
 }
 
 endat_error endat_select_infos(const endat_card *card, uint32_t channel, const uint8_t *mrs, uint32_t count)

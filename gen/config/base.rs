@@ -1,9 +1,18 @@
-//! The keys of `[host]` besides the bus: `base_address` and `sck_hz`.
+//! The keys of `[host]` besides the bus, and which bus takes them.
 
-use super::keys::{BASE_ADDRESS as KEY, SCK_HZ};
+use super::keys::{Key, BASE_ADDRESS as KEY, SCK_HZ};
 use super::reader::Table;
 use endat_hdl::card::bus::HostBus;
 use endat_regs::MAP_BYTES;
+
+/// Whether a card with this bus takes a key.
+pub fn takes(bus: HostBus, key: &Key) -> bool {
+    match key.name {
+        name if name == KEY.name => bus.is_internal() && bus != HostBus::Bare,
+        name if name == SCK_HZ.name => bus == HostBus::Spi,
+        _ => true,
+    }
+}
 
 /// Reads where a system has the registers; `None` if something is wrong.
 pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<u32> {
@@ -11,9 +20,8 @@ pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<u32> {
     let Some(base) = table.integer(&KEY, &limits) else {
         return (!table.has(KEY.name)).then_some(0);
     };
-    let has_addresses = |bus: HostBus| bus.is_internal() && bus != HostBus::Bare;
     let problem = match u32::try_from(base.value) {
-        _ if !bus.is_none_or(has_addresses) => {
+        _ if !bus.is_none_or(|bus| takes(bus, &KEY)) => {
             "has a meaning behind apb, wishbone and axi_lite only; leave it out".into()
         }
         Err(_) => limits.to_string(),
@@ -33,7 +41,11 @@ pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<u32> {
 }
 
 /// The rate of SPI's clock, which only decides whether the card can follow it.
-pub fn check_sck(host: &Table<'_, '_>, system_hz: Option<u64>) {
+pub fn check_sck(host: &Table<'_, '_>, bus: Option<HostBus>, system_hz: Option<u64>) {
+    if !bus.is_none_or(|bus| takes(bus, &SCK_HZ)) {
+        host.refuse(&SCK_HZ, "has a meaning with spi only; leave it out");
+        return;
+    }
     let limits = SCK_HZ.limits(system_hz);
     if let Some(sck) = host.integer(&SCK_HZ, &limits) {
         host.check(&SCK_HZ, &sck, &limits);

@@ -1,6 +1,6 @@
 //! Configuration files: TOML text in, a checked [`Project`] out, or every complaint with file, line and remedy.
 
-mod base;
+pub mod base;
 mod canonical;
 mod channel;
 mod device;
@@ -57,6 +57,7 @@ pub const PRESETS: &[(&str, &str)] = &[
         "mixed_protocols",
         include_str!("../presets/mixed_protocols.toml"),
     ),
+    ("demo", include_str!("../presets/demo.toml")),
 ];
 /// The presets of T-format receivers.
 pub const RECEIVER_PRESETS: &[(&str, &str)] =

@@ -19,7 +19,7 @@ pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>, has_board: bool) -> Opt
     let (part, remedy) = match bus {
         Some(HostBus::Uart) => (
             last,
-            "a card with a UART is the whole device, nothing else in it could take them; choose another host.bus, or leave [outputs] out",
+            "a card with a UART has no ports for them; choose another host.bus, or leave [outputs] out",
         ),
         Some(HostBus::Bare) => (
             last,

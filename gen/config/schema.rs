@@ -106,9 +106,9 @@ impl<'s, 't> Written<'s, 't> {
     fn read(source: &Source<'_>, t: &Tables<'s, 't>, other: Option<&Board>) -> Self {
         let bus = read_bus(&t.host);
         let has_uart = bus == Some(HostBus::Uart);
-        // A card with a UART is a whole device; one with another bus that leaves the device may be.
+        // A card whose bus leaves the device may be a whole device.
         let may_be_device = bus.is_some_and(|bus| !bus.is_internal());
-        let has_board = has_uart || may_be_device && (other.is_some() || t.root.has("board"));
+        let has_board = may_be_device && (other.is_some() || t.root.has("board"));
         let board = has_board.then(|| read_board(source, &t.board, other));
         let board = board.flatten();
         if let (Some(other), Some(bus)) = (other, bus.filter(|bus| bus.is_internal())) {
@@ -119,9 +119,7 @@ impl<'s, 't> Written<'s, 't> {
         let system = t.clock.required_integer(&keys::SYSTEM_HZ, &system_limits);
         let system_hz = system.as_ref().map(|s| s.value);
         let system_hz = system_hz.filter(|hz| system_limits.contains(*hz));
-        if bus == Some(HostBus::Spi) {
-            base::check_sck(&t.host, system_hz);
-        }
+        base::check_sck(&t.host, bus, system_hz);
         let base_address = base::read(&t.host, bus);
         let defaults = read_line_keys(&t.endat, system_hz);
         let line = line::read(&t.line, system_hz);
@@ -188,11 +186,12 @@ impl<'s, 't> Written<'s, 't> {
 
     /// Complains about tables that this card has nothing for.
     fn refuse_useless(&self, t: &Tables<'s, 't>) {
-        if let Some(bus) = self.bus.filter(|_| !self.has_uart()) {
-            let unused = [("link", &t.link), ("board", &t.board), ("pins", &t.pins)];
-            // The last two belong to a board.
-            let unused = &unused[..if self.has_board { 1 } else { 3 }];
-            refuse_unused(&t.root, bus, unused);
+        if let Some(bus) = self.bus {
+            let of_uart = [("link", &t.link)].into_iter();
+            let of_board = [("board", &t.board), ("pins", &t.pins)].into_iter();
+            let of_uart = of_uart.filter(|_| !self.has_uart());
+            let of_board = of_board.filter(|_| !self.has_board);
+            refuse_unused(&t.root, bus, of_uart.chain(of_board));
         }
         let is_t_format =
             |c: &Option<Channel>| c.as_ref().is_some_and(|c| c.request.t_format.is_some());
@@ -407,10 +406,14 @@ fn read_bus(table: &Table<'_, '_>) -> Option<HostBus> {
 }
 
 /// Complains about tables that a card with this bus has no use for.
-fn refuse_unused(root: &Table<'_, '_>, bus: HostBus, tables: &[(&str, &Table<'_, '_>)]) {
+fn refuse_unused<'a, 's: 'a, 't: 'a>(
+    root: &Table<'s, 't>,
+    bus: HostBus,
+    tables: impl Iterator<Item = (&'a str, &'a Table<'s, 't>)>,
+) {
     let name = bus.name();
-    for (key, table) in tables.iter().filter(|(key, _)| root.has(key)) {
-        let text = match *key {
+    for (key, table) in tables.filter(|(key, _)| root.has(key)) {
+        let text = match key {
             "link" => format!("[link]: host.bus = \"{name}\" has no UART, and [link] is about its rate; remove the table"),
             _ if bus.is_internal() => format!("[{key}]: host.bus = \"{name}\" stays inside the chip, so the card has no board top and no pins of its own; remove the table"),
             _ => format!("[{key}]: says which pins of a board the signals are on, and there is no board; add [board], or remove the table"),

@@ -34,8 +34,8 @@ pub struct Timebase {
 /// System clock cycles in a microsecond, to the nearest cycle and within what the counter can divide.
 pub const fn cycles_per_us(system_hz: u64) -> u64 {
     let cycles = (system_hz + 500_000) / 1_000_000;
-    if cycles < 2 {
-        2
+    if cycles < 1 {
+        1
     } else if cycles > SYSTEM_HZ_MAX / 1_000_000 {
         SYSTEM_HZ_MAX / 1_000_000
     } else {
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn strobe_comes_once_in_a_microsecond_and_time_counts_cycles() {
-        for system_hz in [8_000_000, 100_000_000, 128_000_000, 256_000_000] {
+        for system_hz in [1_000_000, 8_000_000, 100_000_000, 128_000_000, 256_000_000] {
             let mut uut = Timebase::new(system_hz);
             uut.connect_all();
             let mut strobes = Vec::new();

@@ -15,6 +15,9 @@ const CONTINUOUS_PERIOD_MIN: u64 = 8;
 /// of the CRC.
 const REQUESTS_PERIOD_MIN: u64 = 4;
 
+/// Slowest system clock with which the program of an initialisation ends the pulse behind power-up in time, in hertz.
+const INITIALISE_HZ_MIN: u64 = 8_000_000;
+
 /// A part that needs more cycles in a period than the channel has.
 fn too_fast_for(
     index: usize,
@@ -65,6 +68,14 @@ impl CardDraft {
             // Without a believable system clock every other number would only repeat this complaint.
             return Err(problems);
         };
+        if self.service.initialise && system_hz < INITIALISE_HZ_MIN {
+            check.section = Section::Clock;
+            check.fail(
+                "system_hz",
+                system_hz.to_string(),
+                format!("is too slow for the steps of an initialisation; use at least {INITIALISE_HZ_MIN} Hz, or leave \"initialise\" out of service.parts"),
+            );
+        }
         let mut channels = Vec::new();
         for (index, channel) in self.channels.iter().flatten().enumerate() {
             let own = channel.as_ref().and_then(|c| c.trigger);

@@ -188,12 +188,28 @@ impl ChannelConfig {
     }
 }
 
+/// Cycles that a period of the clock that measures the delay has besides the delay: from the pin to the receiver, which must see a bit
+/// before the next one comes.
+const CALIBRATION_FREE_CYCLES: u64 = 7;
+
 /// The clock that measures the delay: its period must hold the delay, and be one that can be timed.
 fn check_calibration(check: &mut Check<'_>, request: &ChannelRequest, system_hz: u64) -> bool {
+    let held_ns = request.delay_max_ns() + request.filter_ns.min(1_000_000);
+    let held_cycles = cycles_at_least(held_ns, system_hz) + CALIBRATION_FREE_CYCLES;
+    let fits_hz = system_hz / held_cycles;
+    let made = request.calibration_hz().min(request.clock_hz);
+    if made > fits_hz && fits_hz < calibration_most_hz(held_ns) {
+        let remedy = match fits_hz {
+            ENDAT_HZ_MIN.. => format!("use at most {fits_hz} Hz"),
+            _ => "shorten cable or filter".into(),
+        };
+        let text = format!("its period must be {held_cycles} cycles of clock.system_hz = {system_hz}, {held_ns} ns for cable and filter and {CALIBRATION_FREE_CYCLES} cycles for the receiver; {remedy}, or use a faster system clock");
+        check.fail("calibration_hz", made, text);
+        return false;
+    }
     let Some(hz) = request.calibration_hz else {
         return true;
     };
-    let held_ns = request.delay_max_ns() + request.filter_ns.min(1_000_000);
     let low = ENDAT_HZ_MIN.max(system_hz.div_ceil(max_of(PERIOD_BITS)));
     let high = calibration_most_hz(held_ns).max(low);
     if !(low..=high).contains(&hz) {
@@ -260,9 +276,11 @@ fn check_clock(
     let period = period_cycles(clock_hz, system_hz);
     let (cycles_min, remedy) = match double_edge {
         true => (PERIOD_CYCLES_MIN_DOUBLE, ""),
+        // Nothing is proposed that would be refused itself.
+        false if period < PERIOD_CYCLES_MIN_DOUBLE => (PERIOD_CYCLES_MIN, ""),
         false => (
             PERIOD_CYCLES_MIN,
-            ", or line.parts = [\"alignment\", \"double_edge\"], which needs half of that",
+            ", or line.parts = [\"alignment\", \"double_edge\"], which needs half of that on a card without requests",
         ),
     };
     if period < cycles_min {

@@ -51,8 +51,8 @@ pub const FIRST_LOW_EXTRA_MIN: u64 = 4;
 pub const READY_LOW_BITS: u32 = 8;
 /// Bits of the period of the sampling timer, in the blocks.
 pub const TIMER_BITS: u32 = CARD_CONFIG.field("trigger_period", "value").width;
-/// Slowest system clock that leaves the UART and the filters room, in hertz.
-pub const SYSTEM_HZ_MIN: u64 = 8_000_000;
+/// Slowest system clock that can count microseconds, in hertz.
+pub const SYSTEM_HZ_MIN: u64 = 1_000_000;
 /// Fastest system clock that the time stamps and counters are made for, in hertz.
 pub const SYSTEM_HZ_MAX: u64 = 250_000_000;
 /// Fewest system clock cycles in one bit of the host UART.

@@ -233,7 +233,7 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
     type Change = fn(&mut CardRequest);
     let cases: [(Change, &str, &str); 23] = [
         (|c| c.channels[1].tcal_max_ns = 4_083_000, "tcal_max_ns", "outside 1..4082800; choose a value in that range"),
-        (|c| c.system_hz = 1_000_000, "system_hz", "outside 8000000..250000000"),
+        (|c| c.system_hz = 999_999, "system_hz", "outside 1000000..250000000"),
         (|c| c.channels.clear(), "channel", "1..8 channels"),
         (|c| c.channels[1].clock_hz = 99_999, "clock_hz", "outside 100000..16000000"),
         (|c| { c.system_hz = 50_000_000; c.channels[1].clock_hz = 16_000_000 }, "clock_hz", "needs a system clock of at least 64000000 Hz"),
@@ -264,6 +264,75 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
             "{problem} does not contain {text}"
         );
     }
+}
+
+/// A card that the slowest system clock can have.
+fn slow_card() -> CardRequest {
+    let mut request = card();
+    request.system_hz = 1_000_000;
+    for channel in &mut request.channels {
+        channel.clock_hz = 100_000;
+        channel.tst_ns = 0;
+        channel.filter_ns = 0;
+        channel.start_window_ns = 1_000;
+        channel.cable_m = 10;
+    }
+    request.sample_hz = 100;
+    request.baud = 125_000;
+    request.read_hz = 10;
+    request
+}
+
+#[test]
+fn what_a_slow_system_clock_cannot_have_is_refused() {
+    assert_eq!(CardConfig::resolve(&slow_card()).map(|_| ()), Ok(()));
+    let mut request = slow_card();
+    request.service.requests = true;
+    request.service.initialise = true;
+    request.channels.truncate(1);
+    let problems = CardConfig::resolve(&request).unwrap_err();
+    assert_eq!((problems.len(), problems[0].key), (1, "system_hz"));
+    assert!(
+        problems[0].text.contains("use at least 8000000 Hz"),
+        "{problems:?}"
+    );
+    request.system_hz = 8_000_000;
+    request.channels[0].start_window_ns = 125;
+    assert!(CardConfig::resolve(&request).is_ok());
+}
+
+#[test]
+fn the_clock_that_measures_the_delay_leaves_room_for_the_receiver() {
+    // 1 us of the usual calibration clock is one cycle here: the receiver would see a bit when the next one comes.
+    let mut request = slow_card();
+    request.channels[1].clock_hz = 142_857;
+    let problems = CardConfig::resolve(&request).unwrap_err();
+    assert_eq!((problems.len(), problems[0].key), (1, "calibration_hz"));
+    assert!(
+        problems[0].text.contains("use at most 125000 Hz"),
+        "{problems:?}"
+    );
+    request.channels[1].clock_hz = 125_000;
+    assert!(CardConfig::resolve(&request).is_ok());
+    // No clock of EnDat is slow enough.
+    request.channels[1].cable_m = 310;
+    let problems = CardConfig::resolve(&request).unwrap_err();
+    assert!(
+        problems[0].text.contains("shorten cable or filter"),
+        "{problems:?}"
+    );
+    // One that is asked for, on a short cable: four fifths of its period would hold the delay.
+    let asked = |calibration_hz| {
+        let mut request = card();
+        request.channels[0].cable_m = 0;
+        request.channels[0].filter_ns = 0;
+        request.channels[0].start_window_ns = 50;
+        request.channels[0].calibration_hz = Some(calibration_hz);
+        request.channels[0].clock_hz = 10_000_000;
+        CardConfig::resolve(&request)
+    };
+    assert_eq!(asked(3_703_703).map(|_| ()), Ok(()));
+    assert_eq!(asked(3_703_704).unwrap_err()[0].key, "calibration_hz");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! `host.bus` in a configuration: what is emitted, and what is refused.
 
 use super::{text, WORD_BUSES};
-use endat_gen::config::{load_preset, parse, DEFAULT_PRESET};
+use endat_gen::config::{load_preset, parse, preset, DEFAULT_PRESET};
 use endat_hdl::card::bus::HostBus;
 
 #[test]
@@ -30,6 +30,36 @@ fn uart_is_what_a_card_has_if_nothing_is_asked() {
         .to_owned()
         + "\n[host]\nbus = \"uart\"\n";
     assert_eq!(parse("card.toml", &asked).unwrap().hash, preset.hash);
+}
+
+/// Catches a card with a UART that only a board may hold: whoever has a top of his own gives it the clock.
+#[test]
+fn a_card_with_a_uart_comes_without_a_board_too() {
+    let with = preset(DEFAULT_PRESET).unwrap();
+    let without = with.split("\n[board]").next().unwrap();
+    let card = parse("card.toml", without).unwrap();
+    assert!(card.board.is_none() && card.pins.is_empty());
+    let files = endat_gen::emit(&card).unwrap();
+    let has = |end: &str| files.iter().any(|file| file.path.ends_with(end));
+    assert!(has("_tb.v") && has("_example.c") && has(".sdc"));
+    assert!(!has("_top.v") && !has(".ucf") && !has("_build.tcl"));
+    let readme = files.iter().find(|file| file.path == "README.md").unwrap();
+    assert!(
+        readme.text.contains("registers behind a UART"),
+        "{}",
+        readme.text
+    );
+    assert!(readme.text.contains("the configuration names no board"));
+    let pins = format!("{without}\n[pins]\ntrigger_i = \"A0\"\n");
+    let found = parse("card.toml", &pins).unwrap_err();
+    assert!(
+        found.len() == 1 && found[0].text.contains("there is no board; add [board]"),
+        "{found:?}"
+    );
+    // `--board` holds it, too.
+    let board = endat_gen::board::Board::named("papilio_pro").unwrap();
+    let held = endat_gen::config::parse_on("card.toml", without, Some(&board)).unwrap();
+    assert!(held.board.is_some() && !held.pins.is_empty());
 }
 
 #[test]

@@ -12,7 +12,9 @@ use endat_gen::config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_sim::encoder::Defect;
 use rig::{Rig, ALL_PARTS};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
 use std::sync::OnceLock;
 
 /// Where the driver lies.
@@ -173,6 +175,40 @@ fn examples_and_the_page_compile() {
     let program = folder.join("uio").display().to_string();
     let (is_good, text) = tools::run(&program, &folder, &["map"]);
     assert!(!is_good && text.contains("no card answers"), "{text}");
+    on_a_simulated_card(&program, &folder);
+}
+
+/// The same program on a desk, by the command of its first lines: another card, which runs slower than it thinks.
+fn on_a_simulated_card(program: &str, folder: &Path) {
+    let mut card = crate::program::program()
+        .args(["card", "--preset", "artinchip_endat_if"])
+        .args(["--tcp", "127.0.0.1:0"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut name = String::new();
+    let mut lines = BufReader::new(card.stdout.take().unwrap());
+    lines.read_line(&mut name).unwrap();
+    let port = name.trim().rsplit(':').next().unwrap();
+    let (is_good, text) = tools::run(program, folder, &["tcp", "127.0.0.1", port]);
+    card.kill().unwrap();
+    card.wait().unwrap();
+    assert!(is_good, "{text}");
+    for channel in 0..2 {
+        assert!(text.contains(&format!("channel {channel}: done")), "{text}");
+        let fresh = |line: &&str| {
+            line.starts_with(&format!("channel {channel}:")) && line.ends_with(", fresh, none")
+        };
+        assert_eq!(text.lines().filter(fresh).count(), 10, "{text}");
+    }
+    assert_eq!(
+        text.matches("word 13 of its memory: 0x8019").count(),
+        2,
+        "{text}"
+    );
+    let (is_good, text) = tools::run(program, folder, &["tcp", "127.0.0.1", port]);
+    assert!(!is_good && text.contains("no card listens there"), "{text}");
 }
 
 /// The Verilog as it is emitted, with the encoders of its benches: what the fronts on the bench cannot miss is the emission itself.

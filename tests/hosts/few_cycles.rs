@@ -134,7 +134,7 @@ fn positions_are_right_with_two_system_clocks_to_a_bit() {
 
 #[test]
 fn fewer_clocks_are_refused_with_what_would_do() {
-    let alone = "or line.parts = [\"alignment\", \"double_edge\"], which needs half of that";
+    let alone = "or line.parts = [\"alignment\", \"double_edge\"], which needs half of that on a card without requests";
     let least = "clock.system_hz is 32000000; use at most 8000000 Hz or a faster system clock";
     for (system_hz, line_parts, service_parts, told) in [
         (32, "", "", format!("needs a system clock of at least 64000000 Hz, {least}, {alone}")),

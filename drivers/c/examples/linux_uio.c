@@ -1,19 +1,31 @@
 /**
  * @file linux_uio.c
  * A card on the bus of a system on chip, from user space over UIO: who it is, a parameter, and positions for as long as they are good.
+ * On a desk the same program takes the card that endat-gen simulates.
  *
  *   cc -std=c99 -O2 -I.. -o endat_uio linux_uio.c ../endat*.c && ./endat_uio /dev/uio0
+ *   endat-gen card --preset artinchip_endat_if --tcp 127.0.0.1:7700 & ./endat_uio tcp 127.0.0.1 7700
  */
 #define _POSIX_C_SOURCE 200809L
 #include <fcntl.h>
 #include <inttypes.h>
+#include <netdb.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "endat.h"
+#include "endat_transports.h"
+
+/** How much slower than a card's the time of a simulated one may run; its `card` says at the beginning how it does. */
+#define SIMULATED_SLOWER 100u
+
+/** 1 with a card of silicon. */
+static uint32_t slower = 1u;
 
 static endat_error read_word(void *context, uint32_t word_address, uint32_t *value)
 {
@@ -33,7 +45,8 @@ static uint32_t now_us(void *context)
 
     (void)context;
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint32_t)((uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u);
+    /* All limits are of this time: with a slow card they last longer. */
+    return (uint32_t)(((uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u) / slower);
 }
 
 static void wait_us(void *context, uint32_t us)
@@ -42,6 +55,49 @@ static void wait_us(void *context, uint32_t us)
 
     (void)context;
     (void)nanosleep(&span, NULL);
+}
+
+/** Until the socket gives up a byte, or nobody is at its other end. */
+static endat_error receive_bytes(void *context, uint8_t *bytes, uint32_t count)
+{
+    const int file = *(const int *)context;
+    ssize_t more = 1;
+
+    while ((count > 0u) && (more > 0)) {
+        more = recv(file, bytes, count, 0);
+        if (more > 0) {
+            bytes += more;
+            count -= (uint32_t)more;
+        }
+    }
+    return (count == 0u) ? ENDAT_OK : ENDAT_ERROR_LINK;
+}
+
+static endat_error send_bytes(void *context, const uint8_t *bytes, uint32_t count)
+{
+    return (send(*(const int *)context, bytes, count, MSG_NOSIGNAL) == (ssize_t)count) ? ENDAT_OK : ENDAT_ERROR_LINK;
+}
+
+/** A socket at a simulated card, -1 if there is none. */
+static int connect_to(const char *host, const char *port)
+{
+    const struct addrinfo wanted = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
+    const struct timeval patience = {10, 0};
+    struct addrinfo *found = NULL;
+    int file = -1;
+
+    if (getaddrinfo(host, port, &wanted, &found) == 0) {
+        file = socket(found->ai_family, found->ai_socktype, found->ai_protocol);
+        if ((file >= 0) && (connect(file, found->ai_addr, found->ai_addrlen) != 0)) {
+            (void)close(file);
+            file = -1;
+        }
+        freeaddrinfo(found);
+    }
+    if (file >= 0) {
+        (void)setsockopt(file, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    }
+    return file;
 }
 
 static void show(const endat_moment *moment)
@@ -88,14 +144,48 @@ static endat_error run(endat_card *card)
     return error;
 }
 
-int main(int count, char **arguments)
+/** Opens the card behind a link, and shows it; the exit code. */
+static int show_card(const char *name, const endat_link *link)
 {
-    const char *const path = (count > 1) ? arguments[1] : "/dev/uio0";
+    endat_card card;
+    endat_error error = endat_open(&card, link, 0u);
+
+    if (error == ENDAT_OK) {
+        error = run(&card);
+    }
+    if (error != ENDAT_OK) {
+        fprintf(stderr, "%s: %s\n", name, endat_error_text(error));
+    }
+    return (error == ENDAT_OK) ? 0 : 1;
+}
+
+/** The simulated card behind a TCP port, whatever its bus is. */
+static int over_tcp(const char *host, const char *port)
+{
+    int file = connect_to(host, port);
+    endat_uart uart = {&file, send_bytes, receive_bytes};
+    endat_link link;
+    int code;
+
+    if (file < 0) {
+        fprintf(stderr, "tcp %s %s: no card listens there\n", host, port);
+        return 2;
+    }
+    slower = SIMULATED_SLOWER;
+    endat_uart_link(&uart, &link);
+    link.now_us = now_us;
+    link.wait_us = wait_us;
+    code = show_card("tcp", &link);
+    (void)close(file);
+    return code;
+}
+
+static int over_uio(const char *path)
+{
     const int file = open(path, O_RDWR | O_SYNC);
     void *const map = (file >= 0) ? mmap(NULL, ENDAT_MAP_BYTES, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
-    endat_card card;
     endat_link link;
-    endat_error error;
+    int code;
 
     if (map == MAP_FAILED) {
         perror(path);
@@ -107,14 +197,16 @@ int main(int count, char **arguments)
     link.write = write_word;
     link.now_us = now_us;
     link.wait_us = wait_us;
-    error = endat_open(&card, &link, 0u);
-    if (error == ENDAT_OK) {
-        error = run(&card);
-    }
-    if (error != ENDAT_OK) {
-        fprintf(stderr, "%s: %s\n", path, endat_error_text(error));
-    }
+    code = show_card(path, &link);
     (void)munmap(map, ENDAT_MAP_BYTES);
     (void)close(file);
-    return (error == ENDAT_OK) ? 0 : 1;
+    return code;
+}
+
+int main(int count, char **arguments)
+{
+    if ((count == 4) && (strcmp(arguments[1], "tcp") == 0)) {
+        return over_tcp(arguments[2], arguments[3]);
+    }
+    return over_uio((count > 1) ? arguments[1] : "/dev/uio0");
 }

@@ -1,6 +1,7 @@
 //! The text of a configuration: what was answered, and beside it every key that was not asked for, with what counts without it.
 
 use super::questions::{has_board, has_uart, is_receiver, is_t_format, Answers, Of, QUESTIONS};
+use crate::config::base::takes;
 use crate::config::grouped;
 use crate::config::keys::{
     self, Key, Kind, Usual, CHANNELS, COMMON, ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES,
@@ -10,6 +11,7 @@ use crate::error::GenError;
 use crate::form::key::head;
 use crate::json_schema::plain;
 use crate::number::number;
+use endat_hdl::card::bus::HostBus;
 use std::fmt::Write;
 
 /// Comments are not longer.
@@ -99,7 +101,10 @@ fn table(text: &mut String, answers: &Answers, table: &str, forms: u8, is_told: 
         .filter(|key| key.tables.contains(&table) && key.forms & forms != 0);
     // What all channels have alike is said for all of them.
     let is_for_all = |key: &Key| table == CHANNELS && key.tables.contains(&COMMON);
-    let keys: Vec<&Key> = keys.copied().filter(|key| !is_for_all(key)).collect();
+    let keys = keys.copied().filter(|key| !is_for_all(key));
+    let bus = answers.get("bus").and_then(|name| HostBus::from_name(name));
+    let is_of_bus = |key: &&Key| bus.is_none_or(|bus| takes(bus, key));
+    let keys: Vec<&Key> = keys.filter(is_of_bus).collect();
     let is_said = keys.iter().any(|key| answer(answers, key, table).is_some());
     if table.is_empty() {
         text.push('\n');
