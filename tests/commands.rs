@@ -195,45 +195,125 @@ fn what_takes_minutes_does_what_its_page_says() {
     }
 }
 
+/// What is talked to, or comes of it; `monitor` takes a terminal and `serve` a client, and both have tests of their own.
+const OF_A_CARD: [&str; 12] = [
+    "card", "log", "read", "id", "inject", "stats", "plot", "view", "reg", "param", "margin",
+    "emit",
+];
+/// A second in which what has no end does something.
+const WHILE: &str = "timeout --preserve-status -s INT 10";
+
+/// A command in the script of somebody who follows a page.
+fn step(command: &str, script: &str) -> String {
+    let words = words(command).unwrap();
+    let line = words.join(" ");
+    let after = |option: &str| {
+        let at = words.iter().position(|word| *word == option)?;
+        words.get(at + 1).copied()
+    };
+    // Itself, not a shell around it, so that it is what is ended.
+    let program = format!("'{PROGRAM}' {line}");
+    match words[0] {
+        "card" => {
+            let address = after("--tcp").unwrap().replace(':', "/");
+            format!("{program} &\nfor n in $(seq 600); do sleep 0.1; (: < /dev/tcp/{address}) 2>/dev/null && break; done\n")
+        }
+        "log" if command.contains(STAYS) => {
+            let file = after("--out").unwrap();
+            format!(
+                "{program} &\nfor n in $(seq 600); do sleep 0.1; [ -s {file} ] && break; done\n"
+            )
+        }
+        "view" => format!("{WHILE} {program}\n"),
+        "log" if after("--samples").is_none() => format!("{WHILE} {program}\n"),
+        "read" if script.contains(" unplug ") && !script.contains(" plug ") => {
+            format!("if {command}\nthen exit 1; fi\n")
+        }
+        _ => format!("{command}\n"),
+    }
+}
+
+/// Does in a folder what a page says, in its order; its card comes first, at a port of its own. Gives the folder, and what was told.
+fn follow(page: &str, port: u16, edit: impl Fn(&str) -> String) -> (Dir, String) {
+    let text = edit(&fs::read_to_string(root().join(page)).unwrap());
+    let text = text.replace("127.0.0.1:7700", &format!("127.0.0.1:{port}"));
+    let folder = Dir::new(&format!("follow-{port}"));
+    let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
+    folder.write("mine.toml", preset.as_bytes());
+    let all = commands(&text);
+    let is_here = |command: &&String| {
+        let verb = words(command).map(|words| words[0].to_owned());
+        let is_taken = verb.is_some_and(|verb| OF_A_CARD.contains(&verb.as_str()));
+        // A card for another program to talk to has no end of its own; no port of a real one is here.
+        let is_somebodys = command.contains(" card ") && !command.contains(STAYS);
+        is_taken && !is_somebodys && !command.contains("/dev/")
+    };
+    let all: Vec<&String> = all.iter().filter(is_here).collect();
+    let (cards, others): (Vec<&String>, Vec<_>) =
+        all.iter().partition(|command| command.contains(" card "));
+    assert!(!cards.is_empty(), "{page}");
+    let mut script = String::from("set -e\ntrap 'kill $(jobs -p); wait' EXIT\n");
+    for command in cards.into_iter().chain(others) {
+        script += &step(command, &script);
+    }
+    let (is_good, told) = shell(&folder.0, &script);
+    assert!(is_good, "{page}\n{script}\n{told}");
+    (folder, told)
+}
+
+/// Catches a journey of the README that ends in an error.
+#[test]
+fn the_card_of_the_readme_is_used_as_it_stands() {
+    if !tools::require("bash", "the card of the README") {
+        return;
+    }
+    let (folder, told) = follow("README.md", 7710, |text| {
+        let journey = text.split("I want to try it without hardware").nth(1);
+        // Of its second a twentieth.
+        journey.unwrap().replace("--samples 10000", "--samples 500")
+    });
+    assert!(told.contains("500 sample sets"), "{told}");
+    assert!(folder.0.join("angles.svg").exists(), "{told}");
+}
+
+/// Catches a recording without an end, a name of a file that is another one, a rehearsal that nobody sees.
+#[test]
+fn recordings_are_made_as_their_page_says() {
+    if !tools::require("bash", "recordings of the page") {
+        return;
+    }
+    let (folder, told) = follow("docs/recording.md", 7711, str::to_owned);
+    for file in ["night-0001.parquet", "night.svg", "rehearsal.csv"] {
+        assert!(folder.0.join(file).exists(), "{file}\n{told}");
+    }
+}
+
+/// Catches a page of the host whose first look gives nothing.
+#[test]
+fn the_host_s_page_is_followed_as_it_stands() {
+    if !tools::require("bash", "the page of the host") {
+        return;
+    }
+    let (folder, told) = follow("docs/host.md", 7712, |text| {
+        text.replace("--samples 10000", "--samples 500")
+    });
+    let rows = fs::read_to_string(folder.0.join("angles.csv")).unwrap();
+    assert!(rows.lines().count() > 500, "{told}");
+}
+
 /// The tutorial as somebody follows it: its blocks, in order, as they stand. Catches a step that does not work, or comes too early.
 #[test]
 fn the_tutorial_works_as_it_stands() {
     if !tools::require("bash", "the tutorial") {
         return;
     }
-    let mut text = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
-    if !tools::is_whole() {
+    let (folder, told) = follow("docs/tutorial.md", 7713, |text| match tools::is_whole() {
+        true => text.to_owned(),
         // Of its hour a minute.
-        text = text.replace("--samples 36000000", "--samples 600000");
-        text = text.replace("--from 1800 --to 1802", "--from 30 --to 32");
-    }
-    let folder = Dir::new("tutorial");
-    let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
-    let mut script = String::from("set -e\ntrap 'kill $(jobs -p); wait' EXIT\n");
-    for command in commands(&text) {
-        if command.contains(STAYS) {
-            let address = command.split_once("--tcp ").unwrap().1;
-            let address = address.split_whitespace().next().unwrap().replace(':', "/");
-            // Itself, not a shell around it, so that it is what is ended.
-            let words = words(&command).unwrap().join(" ");
-            script += &format!(
-                "'{PROGRAM}' {words} &\nfor n in $(seq 600); do sleep 0.1; (: < /dev/tcp/{address}) 2>/dev/null && break; done\n"
-            );
-            continue;
-        }
-        let words = words(&command).unwrap();
-        script += &match words[0] {
-            // It asks; what it would write is there already.
-            "new" => continue,
-            "read" if script.contains(" unplug ") && !script.contains(" plug ") => {
-                format!("if {command}\nthen exit 1; fi\n")
-            }
-            _ => format!("{command}\n"),
-        };
-    }
-    folder.write("mine.toml", preset.as_bytes());
-    let (is_good, told) = shell(&folder.0, &script);
-    assert!(is_good, "{script}\n{told}");
+        false => text
+            .replace("--samples 36000000", "--samples 600000")
+            .replace("--from 1800 --to 1802", "--from 30 --to 32"),
+    });
     for words in ["good", "500 sample sets", "; 0 triggers missing, "] {
         assert!(told.contains(words), "{words}\n{told}");
     }
