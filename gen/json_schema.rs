@@ -5,7 +5,7 @@ use crate::board::BOARD_KEYS;
 use crate::config::base;
 use crate::config::keys::*;
 use crate::config::words::{RECEIVER_BUS, T_FORMAT};
-use crate::form::key::{Key, Kind, Usual};
+use crate::form::key::{Key, Kind, Usual, ANY_NAME};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CHANNELS as COUNTS;
 use serde_json::{json, Map, Value};
@@ -313,7 +313,12 @@ pub fn board() -> Value {
         let mut table = table(&keys, "");
         let fixed = keys.into_iter().filter(|k| k.names.is_none());
         table["required"] = required(fixed).into();
-        body["properties"][name] = table;
+        match name.strip_suffix(ANY_NAME) {
+            Some(all) => {
+                body["properties"][all] = json!({"type": "object", "additionalProperties": table});
+            }
+            None => body["properties"][name] = table,
+        }
     }
     // A package has numbered pins, or a grid of balls.
     let (packages, others): (Vec<&Key>, Vec<&Key>) =

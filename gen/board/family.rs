@@ -9,6 +9,7 @@ use crate::form::document::parse;
 use crate::form::key::Key;
 use crate::form::reader::{Source, Table};
 use crate::template;
+use endat_hdl::config::Limits;
 use minijinja::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -103,6 +104,8 @@ pub struct Family {
     pub clock_manager: ClockManager,
     /// Words of the constraints file, by the name of the kind of signal.
     attributes: BTreeMap<&'static str, String>,
+    /// The supply that each I/O standard needs, in mV.
+    pub supplies: BTreeMap<String, u64>,
     /// What a board has to say about its device, with an example of each.
     pub device: BTreeMap<String, String>,
     /// FuseSoC, if it knows the family's tools.
@@ -260,6 +263,12 @@ fn read_file(
         }
     }
     table.finish();
+    let limits = Limits::new(keys::SUPPLY_MV);
+    let supplies = root.table("supplies", &empty).free_numbers(&limits);
+    let supplies = supplies
+        .into_iter()
+        .map(|(standard, at)| (standard, at.value))
+        .collect();
     let device = root.table("device", &empty).free_strings();
     let device = device
         .into_iter()
@@ -303,6 +312,7 @@ fn read_file(
         reset_registers,
         clock_manager: clock_manager?,
         attributes,
+        supplies,
         device,
         fusesoc: left_out_or_good(fusesoc)?,
         build: left_out_or_good(build)?,

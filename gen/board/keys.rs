@@ -3,14 +3,18 @@
 use super::SHIPPED_CHANNELS;
 use crate::form::key::{self, keys, Choice, Key, Usual};
 use endat_hdl::config::Limits;
+use std::ops::RangeInclusive;
 
 /// Longest word that goes into emitted files.
 pub const WORD_MAX: usize = 60;
 /// Most pins and columns of a package.
 const PINS_MAX: u64 = 4_096;
+/// Supplies of a bank, in mV: from what LVCMOS12 needs, less a fifth, to what LVCMOS33 does.
+pub const SUPPLY_MV: RangeInclusive<u64> = 1_000..=3_300;
 
 const TOP: &[&str] = &[""];
 const START: &[&str] = &["start"];
+const BANK: &[&str] = &["banks.NAME"];
 const CLOCK: &[&str] = &["clock_manager"];
 const BUILD: &[&str] = &["build"];
 const FUSESOC: &[&str] = &["fusesoc"];
@@ -57,6 +61,9 @@ keys! {
     FIXED = free(&["fixed"], "SIGNAL", "pin of a signal that the board itself wires").named(super::signals);
     WING = free(&["wing"], "SIGNAL", "usual place of another one, by position or pin").named(super::signals);
     OWN_STANDARD = free(&["iostandards"], "PIN", "I/O standard of a pin that has another one");
+    SUPPLY = Key::number(BANK, "supply_mv", "supply of a bank, where one of its pins could be given an I/O standard for another")
+        .within(|_, _| Limits::new(SUPPLY_MV)).required("1_800");
+    BANK_PINS = Key::texts(BANK, "pins", "pins of that bank, as far as they are known; pins of no bank are not checked").required("[\"10\", \"11\"]");
     DEVICE_WORD = free(&["device"], "WORD", "what the family's tools ask for besides: its `family.toml` has an example of each");
     SYSTEM_HZ = Key::number(START, "system_hz", "system clock of the shipped configuration, where 100 MHz do not suit").required("100_000_000");
     CLOCK_HZ = Key::number(START, "clock_hz", "its EnDat clock, where 3.125 MHz do not suit").required("3_125_000");

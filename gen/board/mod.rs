@@ -1,5 +1,6 @@
 //! Boards: which pins one has, and what is on them. A board is a file, and so is what its family of devices is.
 
+mod banks;
 mod clock;
 mod family;
 mod keys;

@@ -1,5 +1,6 @@
 //! The way from a board's file to a [`Board`]; every complaint with its line.
 
+use super::banks;
 use super::family::Family;
 use super::keys::{self, WORD_MAX};
 use super::package::{Package, Word};
@@ -24,6 +25,32 @@ pub fn read(name: &str, file: &str, text: &str, folder: &Path) -> Result<Board, 
     }
 }
 
+/// Where something stands in the file.
+#[derive(Clone, Debug)]
+pub struct Stands {
+    /// Its key, with that of its table.
+    pub name: String,
+    /// Its line, counted from 1.
+    pub line: usize,
+}
+
+/// Where a board's pins and standards stand.
+pub struct Lines {
+    /// The standard of all pins but those with their own.
+    pub standard: Stands,
+    /// Pins that are used.
+    pub pins: BTreeMap<String, Stands>,
+    /// Standards of pins that have their own.
+    pub standards: BTreeMap<String, Stands>,
+}
+
+impl Stands {
+    fn new(table: &Table<'_, '_>, key: &str, line: usize) -> Self {
+        let name = table.name(key);
+        Self { name, line }
+    }
+}
+
 /// A pin or place, where it stands, and its line.
 struct Place {
     key: String,
@@ -37,6 +64,7 @@ struct Tables<'s, 't> {
     fixed: Table<'s, 't>,
     wing: Table<'s, 't>,
     iostandards: Table<'s, 't>,
+    banks: Table<'s, 't>,
     device: Table<'s, 't>,
     start: Table<'s, 't>,
 }
@@ -51,6 +79,7 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
         fixed: table("fixed"),
         wing: table("wing"),
         iostandards: table("iostandards"),
+        banks: table("banks"),
         device: table("device"),
         start: table("start"),
         root,
@@ -78,6 +107,7 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
     let fixed = places(&t.fixed);
     let wing = places(&t.wing);
     let iostandards = places(&t.iostandards);
+    let banks = banks::read(&t.banks);
     let device = read_device(&t.device, family.as_ref());
     let start = read_start(&t.start);
     t.root.finish();
@@ -94,16 +124,17 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
         t.root
             .complain(oscillator_hz.line, "oscillator_hz", &value, &text);
     }
+    let iostandard = iostandard?;
     let mut board = Board {
         name: name.into(),
         file: None,
-        title: title?,
-        part: part?,
+        title: title?.value,
+        part: part?.value,
         device: device?,
         oscillator_pin: String::new(),
         oscillator_hz: oscillator_hz.value,
         uart_baud_max: uart_baud_max?.value,
-        iostandard: iostandard?,
+        iostandard: iostandard.value,
         iostandards: BTreeMap::new(),
         loader,
         low_active: BTreeSet::new(),
@@ -114,8 +145,19 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
         family,
         package,
     };
-    take_pins(&t, &mut board, oscillator_pin?, connectors, fixed);
-    take_words_of_pins(&t, &mut board, &low_active, iostandards);
+    let pins = take_pins(&t, &mut board, oscillator_pin?, connectors, fixed);
+    let standards = take_words_of_pins(&t, &mut board, &low_active, iostandards);
+    let standard = Stands::new(&t.root, keys::IOSTANDARD.name, iostandard.line);
+    banks::check(
+        &t.banks,
+        &board,
+        banks,
+        &Lines {
+            standard,
+            pins,
+            standards,
+        },
+    );
     take_wing(&t, &mut board, wing);
     board.start = take_start(&t.start, &board, start);
     Some(board)
@@ -125,10 +167,10 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
 const STANDARD: &str = "_-. ";
 
 /// A word that goes into emitted files: letters, digits, and what else is allowed.
-fn read_word(table: &Table<'_, '_>, key: &'static Key, more: &str) -> Option<String> {
+fn read_word(table: &Table<'_, '_>, key: &'static Key, more: &str) -> Option<At<String>> {
     let word = table.required_string(key)?;
     check_word(table, key.name, &word, more)?;
-    Some(word.value)
+    Some(word)
 }
 
 fn check_word(table: &Table<'_, '_>, key: &str, word: &At<String>, more: &str) -> Option<()> {
@@ -286,22 +328,24 @@ fn take_start(table: &Table<'_, '_>, board: &Board, start: Option<StartAt>) -> O
     })
 }
 
-/// Pins of connectors, oscillator and signals that are wired: each is in the package, and none stands twice.
+/// Pins of connectors, oscillator and signals that are wired: each is in the package, and none stands twice. Where they stand.
 fn take_pins(
     t: &Tables<'_, '_>,
     board: &mut Board,
     oscillator: At<String>,
     connectors: Vec<(String, Vec<At<String>>)>,
     fixed: Vec<Place>,
-) {
-    let mut seen: BTreeMap<String, String> = BTreeMap::new();
+) -> BTreeMap<String, Stands> {
+    let mut seen: BTreeMap<String, Stands> = BTreeMap::new();
     let mut take = |board: &Board, table: &Table<'_, '_>, key: &str, at: &At<String>| {
         let told = |text: &str| table.complain(at.line, key, &format!("{:?}", at.value), text);
         match board.package.look_up(&at.value.to_ascii_uppercase()) {
             Word::Pin(pin) => {
-                if let Some(other) = seen.insert(pin.clone(), table.name(key)) {
+                let here = Stands::new(table, key, at.line);
+                if let Some(other) = seen.insert(pin.clone(), here) {
                     told(&format!(
-                        "already stands at {other}; a pin has one place, remove one of the two"
+                        "already stands at {}; a pin has one place, remove one of the two",
+                        other.name
                     ));
                 }
                 Some(pin)
@@ -341,17 +385,19 @@ fn take_pins(
             board.fixed.insert(key, pin);
         }
     }
+    seen
 }
 
-/// I/O standards of pins, and lights that shine when low.
+/// I/O standards of pins, and lights that shine when low; where the standards stand.
 fn take_words_of_pins(
     t: &Tables<'_, '_>,
     board: &mut Board,
     low_active: &[At<String>],
     iostandards: Vec<Place>,
-) {
+) -> BTreeMap<String, Stands> {
     let known = |pin: &str| board.is_free(pin) || pin == board.oscillator_pin;
     let mut standards = BTreeMap::new();
+    let mut lines = BTreeMap::new();
     for Place { key, at } in iostandards {
         let pin = key.to_ascii_uppercase();
         if !known(&pin) {
@@ -359,6 +405,7 @@ fn take_words_of_pins(
             t.iostandards
                 .complain(at.line, &key, &format!("{:?}", at.value), text);
         } else if check_word(&t.iostandards, &key, &at, STANDARD).is_some() {
+            lines.insert(pin.clone(), Stands::new(&t.iostandards, &key, at.line));
             standards.insert(pin, at.value);
         }
     }
@@ -374,6 +421,7 @@ fn take_words_of_pins(
     }
     board.iostandards = standards;
     board.low_active = low;
+    lines
 }
 
 fn check_signal(table: &Table<'_, '_>, key: &str, at: &At<String>, known: &[String]) {

@@ -45,7 +45,7 @@ pub fn names() -> Vec<String> {
 
 /// Whether a name is that of a key: alone, or behind one of its tables, with a number if that has several.
 fn is_meant(key: &Key, name: &str) -> bool {
-    let Some((table, own)) = name.split_once('.') else {
+    let Some((table, own)) = name.rsplit_once('.') else {
         return name == key.name && key.names.is_none();
     };
     // Some keys are named after things, and in the table by what they are named after.

@@ -3,6 +3,7 @@
 use super::asked::Kind;
 use super::key::Key;
 use super::reader::{At, Table};
+use endat_hdl::config::Limits;
 use toml::de::DeValue;
 use toml::Spanned;
 
@@ -61,6 +62,52 @@ impl<'s, 't> Table<'s, 't> {
                 None => self.wrong_type(key.get_ref(), spanned, "text in quotes"),
             }
         }
+        all
+    }
+
+    /// Every key with its number, within these limits.
+    pub fn free_numbers(&self, limits: &Limits) -> Vec<(String, At<u64>)> {
+        let mut all = Vec::new();
+        for (key, spanned) in self.table.iter() {
+            let name = key.get_ref();
+            let Some(integer) = spanned.get_ref().as_integer() else {
+                self.wrong_type(name, spanned, "a whole number");
+                continue;
+            };
+            let value = u64::from_str_radix(integer.as_str(), integer.radix());
+            match value.ok().filter(|value| limits.contains(*value)) {
+                Some(value) => all.extend(self.at(value, spanned).map(|at| (name.to_string(), at))),
+                None => {
+                    let line = self.source.line(spanned.span().start);
+                    self.complain(
+                        line,
+                        name,
+                        &self.excerpt(&spanned.span()),
+                        &limits.to_string(),
+                    );
+                }
+            }
+        }
+        all
+    }
+
+    /// Every key with the table below it.
+    pub fn free_tables(&self) -> Vec<(String, Table<'s, 't>)> {
+        let mut all = Vec::new();
+        for (key, spanned) in self.table.iter() {
+            let path = self.name(key.get_ref());
+            match spanned.get_ref().as_table() {
+                Some(table) => {
+                    let line = self.source.line(spanned.span().start);
+                    let table = Table::new(self.source, table, path, line);
+                    all.push((key.get_ref().to_string(), table));
+                }
+                None => {
+                    self.wrong_type(key.get_ref(), spanned, &format!("a table headed [{path}]"));
+                }
+            }
+        }
+        all.sort_by_key(|(_, table)| table.line);
         all
     }
 

@@ -297,18 +297,23 @@ impl Key {
     /// Whether it belongs to the table with this path.
     pub fn belongs_to(&self, path: &str) -> bool {
         let table = path.split('[').next().unwrap_or_default();
-        self.tables.contains(&table)
+        let is = |name: &&str| match name.strip_suffix(ANY_NAME) {
+            None => *name == table,
+            Some(of) => table.strip_prefix(of).is_some_and(|n| n.starts_with('.')),
+        };
+        self.tables.iter().any(is)
     }
 
     /// Unit of its numbers, which its name ends in.
     pub fn unit(&self) -> &'static str {
-        const UNITS: [(&str, &str); 7] = [
+        const UNITS: [(&str, &str); 8] = [
             ("baud", "bit/s"),
             ("_hz", "Hz"),
             ("_ns", "ns"),
             ("_us", "us"),
             ("_ms", "ms"),
             ("_m", "m"),
+            ("_mv", "mV"),
             ("_cycles", "cycles"),
         ];
         let found = UNITS.iter().find(|(end, _)| self.name.ends_with(end));
@@ -419,6 +424,9 @@ impl Key {
         }
     }
 }
+
+/// Ends the name of a table that there may be several of, each with a name of its own.
+pub const ANY_NAME: &str = ".NAME";
 
 /// The one table that a form may have several of.
 pub const CHANNELS: &str = "channel";

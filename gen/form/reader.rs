@@ -155,7 +155,12 @@ impl<'s, 't> Table<'s, 't> {
         Self::new(source, table, String::new(), 1)
     }
 
-    fn new(source: &'s Source<'t>, table: &'s DeTable<'t>, path: String, line: usize) -> Self {
+    pub(super) fn new(
+        source: &'s Source<'t>,
+        table: &'s DeTable<'t>,
+        path: String,
+        line: usize,
+    ) -> Self {
         Self {
             source,
             table,

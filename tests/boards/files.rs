@@ -7,6 +7,7 @@ use std::path::Path;
 
 const PAPILIO: &str = include_str!("../../constraints/boards/papilio_pro.toml");
 const ULX3S: &str = include_str!("../../constraints/boards/ulx3s.toml");
+const TANG_NANO: &str = include_str!("../../constraints/boards/tang_nano_9k.toml");
 const DE10_NANO: &str = include_str!("../../constraints/boards/de10_nano.toml");
 
 /// The text with one place changed, and the line of the change.
@@ -39,6 +40,20 @@ fn wrong_board_files_are_refused_with_line_and_remedy() {
         (PAPILIO, "oscillator_hz = 32_000_000", "oscillator_hz = -1", "oscillator_hz = -1: outside 1000..1000000000"),
         (PAPILIO, "[wing]", "[start]\nsystem_hz = 96_000_000\nclock_hz = 3_000_000\nchannels = 3\n[wing]", "start.channels = 3: outside 1..2"),
         (PAPILIO, "[wing]", "[start]\nsystem_hz = 99_999_999\nclock_hz = 3_000_000\n[wing]", "start.system_hz = 99999999: the clock manager cannot make it from the board's 32000000 Hz; use 99200000 or 100000000 Hz"),
+        // banks
+        (TANG_NANO, "10 = \"LVCMOS18\"", "10 = \"LVCMOS33\"", "iostandards.10 = \"LVCMOS33\": needs a supply of 3300 mV, and banks.3 has 1800 mV; give the pin one for that in [iostandards]: LVCMOS18"),
+        (TANG_NANO, "led_status_o = \"10\"", "led_status_o = \"14\"", "fixed.led_status_o = \"14\": LVCMOS33, its standard by `iostandard`, needs a supply of 3300 mV, and banks.3 has 1800 mV; give the pin one for that in [iostandards]: LVCMOS18"),
+        (TANG_NANO, "oscillator_pin = \"52\"", "oscillator_pin = \"4\"", "oscillator_pin = \"4\": LVCMOS33, its standard by `iostandard`, needs a supply of 3300 mV"),
+        (TANG_NANO, "J6_ = [\"-\", \"38\"", "J6_ = [\"15\", \"38\"", "connectors.J6_ = \"15\": LVCMOS33, its standard by `iostandard`, needs a supply of 3300 mV"),
+        (PAPILIO, "[fixed]", "[iostandards]\nP105 = \"LVCMOS18\"\n[fixed]", "iostandards.P105 = \"LVCMOS18\": needs a supply of 1800 mV, and banks.all has 3300 mV; give the pin one for that in [iostandards]: LVCMOS33, LVTTL"),
+        (TANG_NANO, "pins = [\"3\", \"4\"", "pins = [\"3\", \"89\"", "banks.3.pins = \"89\": no such pin; the package of GW1NR-LV9QN88PC6/I5 has 1..88"),
+        (TANG_NANO, "[iostandards]", "[banks.4]\nsupply_mv = 1_800\npins = [\n\"10\"]\n[iostandards]", "banks.4.pins = \"10\": already stands at banks.3.pins; a pin has one bank, remove one of the two"),
+        (TANG_NANO, "supply_mv = 1_800", "supply_mv = 18", "banks.3.supply_mv = 18: outside 1000..3300; choose a value in that range"),
+        (TANG_NANO, "supply_mv = 1_800", "supply_mv = 1_850", "banks.3.supply_mv = 1850: no I/O standard of Gowin GW1NR is for that; write one of: 1200, 1500, 1800, 2500, 3300"),
+        (TANG_NANO, "supply_mv = 1_800", "supply = 1_800", "banks.3.supply: unknown key; did you mean supply_mv?"),
+        (TANG_NANO, "[banks.3]\n", "[banks]\n3 = 1_800\n[device2]\n", "banks.3 = 1_800: is an integer, must be a table headed [banks.3]"),
+        (TANG_NANO, "iostandard = \"LVCMOS33\"", "iostandard = \"LVCMOS34\"", "iostandard = \"LVCMOS34\": Gowin GW1NR has no such standard; write one of its: LVCMOS12, LVCMOS15, LVCMOS18, LVCMOS25, LVCMOS33, LVTTL33"),
+        (TANG_NANO, "11 = \"LVCMOS18\"", "11 = \"lvcmos18\"", "iostandards.11 = \"lvcmos18\": Gowin GW1NR has no such standard; write one of its: LVCMOS12"),
         // keys and families
         (PAPILIO, "uart_baud_max = 3_000_000", "uart_baud = 3_000_000", "uart_baud: unknown key; did you mean uart_baud_max?"),
         (PAPILIO, "family = \"spartan6\"", "family = \"spartan7\"", "family = \"spartan7\": unknown family; known families: cyclone5, ecp5, gowin, ice40, spartan6, xc7"),
@@ -230,6 +245,8 @@ fn a_family_of_ones_own_is_a_folder_and_what_is_wrong_with_it_is_told() {
         ("feedback = \"output\"", "feedback = \"out\"", "clock_manager.feedback = \"out\": unknown; use loop"),
         ("vco_hz = [400_000_000, 800_000_000]\n", "", "clock_manager.vco_hz: is missing; add"),
         ("constraints = \"lpf\"", "constraints = \"../lpf\"", "constraints = \"../lpf\": is no end of a file's name"),
+        ("LVCMOS18 = 1_800", "LVCMOS18 = 18", "supplies.LVCMOS18 = 18: outside 1000..3300; choose a value in that range"),
+        ("LVCMOS18 = 1_800", "LVCMOS18 = \"1.8 V\"", "supplies.LVCMOS18 = \"1.8 V\": is a string, must be a whole number"),
         ("led = ", "leds = ", "attributes.led: is missing; add"),
         ("pack = [\"ecppack\"", "pack = [\"rm\"", "build.pack = \"rm\": does not begin with a tool for it"),
         ("    \"nextpnr-ecp5\"", "    \"/bin/nextpnr-ecp5\"", "build.place = \"/bin/nextpnr-ecp5\": does not begin with a tool for it"),
@@ -249,6 +266,20 @@ fn a_family_of_ones_own_is_a_folder_and_what_is_wrong_with_it_is_told() {
             "{place}\n{told}"
         );
     }
+    // A family that says nothing of supplies has boards without banks.
+    let from = good_text.find("[supplies]").unwrap();
+    let to = from + good_text[from..].find("\n\n").unwrap();
+    let silent = format!("{}{}", &good_text[..from], &good_text[to..]);
+    dir.write("mine/family.toml", silent.as_bytes());
+    assert!(good(&explain).contains("25000000 Hz * 4"));
+    let with_bank =
+        fs::read_to_string(&board).unwrap() + "[banks.0]\nsupply_mv = 3_300\npins = []\n";
+    let with_bank = dir.write("bank.toml", with_bank.as_bytes());
+    let told = bad(&["explain", "--board", &with_bank], 2);
+    assert!(
+        told.contains("banks: ECP5 does not say which supplies its I/O standards need; add, for example, `LVCMOS18 = 1800` below `[supplies]` of its family.toml"),
+        "{told}"
+    );
     dir.write("mine/family.toml", good_text.as_bytes());
     // A script from elsewhere may do anything: it is not run.
     let out = dir.path("o");

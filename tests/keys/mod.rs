@@ -45,6 +45,11 @@ fn table_of<'t>(document: &'t mut Table, name: &str) -> Option<&'t mut Table> {
     match name {
         "" => Some(document),
         CHANNELS => document.get_mut(name)?.as_array_mut()?[0].as_table_mut(),
+        // The first of tables with names of their own.
+        name if name.ends_with(".NAME") => {
+            let all = table_of(document, name.trim_end_matches(".NAME"))?;
+            all.iter_mut().next()?.1.as_table_mut()
+        }
         name => document.get_mut(name)?.as_table_mut(),
     }
 }
