@@ -47,6 +47,21 @@ fn read_ucf(text: &str) -> Result<BTreeMap<String, Net>, String> {
             "CONFIG" if rest.starts_with("PART = ") => {}
             "TIMESPEC" => {
                 let words: Vec<&str> = rest.split_whitespace().collect();
+                if let ["\"TS_asynchronous_inputs\"", "=", "FROM", group, "TO", "\"FFS\"", ns, "ns", "DATAPATHONLY"] =
+                    words[..]
+                {
+                    let group = group.trim_matches('"');
+                    let is_in =
+                        |net: &&mut Net| net.attributes.get("TNM").is_some_and(|g| g == group);
+                    let mut inputs = nets.values_mut().filter(is_in).peekable();
+                    inputs.peek().ok_or(format!("nothing is in {group}"))?;
+                    for net in inputs {
+                        if net.attributes.insert("BOUND".into(), ns.into()).is_some() {
+                            return Err("two bounds".into());
+                        }
+                    }
+                    continue;
+                }
                 let ["\"TS_osc_i\"", "=", "PERIOD", "\"osc_i\"", ns, "ns", "HIGH", "50", "%"] =
                     words[..]
                 else {
@@ -66,13 +81,14 @@ fn read_ucf(text: &str) -> Result<BTreeMap<String, Net>, String> {
                 for part in rest.split('|').map(str::trim) {
                     let fresh = match part.split_once(" = ") {
                         Some((
-                            key @ ("LOC" | "IOSTANDARD" | "SLEW" | "DRIVE" | "IOB" | "TNM_NET"),
+                            key @ ("LOC" | "IOSTANDARD" | "SLEW" | "DRIVE" | "IOB" | "TNM"
+                            | "TNM_NET"),
                             value,
                         )) => net
                             .attributes
                             .insert(key.into(), value.trim_matches('"').into())
                             .is_none(),
-                        None if matches!(part, "TIG" | "PULLUP" | "PULLDOWN") => {
+                        None if matches!(part, "PULLUP" | "PULLDOWN") => {
                             net.flags.insert(part.into())
                         }
                         _ => return Err(format!("NET {name}: unknown constraint {part:?}")),
@@ -145,10 +161,17 @@ pub fn judge(project: &Project) {
             "{port}"
         );
         assert_eq!(net.attributes.contains_key("SLEW"), !is_input, "{port}");
-        assert_eq!(
-            net.flags.contains("TIG"),
-            (*is_input || port.ends_with("_io")) && port != "osc_i",
-            "{port}"
+        // No clock times them: a way to the first register of a system clock at most.
+        let is_asynchronous = (*is_input || port.ends_with("_io")) && port != "osc_i";
+        let bound = net
+            .attributes
+            .get("BOUND")
+            .map(|ns| ns.parse::<f64>().unwrap());
+        let period = 1e9 / project.card.system_hz as f64;
+        assert_eq!(bound.is_some(), is_asynchronous, "{port}");
+        assert!(
+            bound.is_none_or(|ns| (ns - period).abs() < 1e-4),
+            "{port}: {bound:?}"
         );
         assert!(
             net.flags.contains("PULLUP")
@@ -220,10 +243,12 @@ fn the_ucf_reader_is_strict() {
         good.replacen(';', "", 2),
         good.replace("IOSTANDARD", "IOSTANDART"),
         good.replace(
-            "NET \"trigger_i\" TIG;",
-            "NET \"trigger_i\" TIG;\nNET \"trigger_i\" TIG;",
+            "NET \"trigger_i\" TNM =",
+            "NET \"trigger_i\" TNM = \"others\";\nNET \"trigger_i\" TNM =",
         ),
-        good.replace("NET \"trigger_i\" TIG", "NET trigger_i TIG"),
+        good.replace("NET \"trigger_i\" TNM", "NET trigger_i TNM"),
+        good.replace("FROM \"asynchronous_inputs\"", "FROM \"asynchronous\""),
+        good.replace(" DATAPATHONLY", ""),
         good.replace("PERIOD \"osc_i\"", "PERIOD osc_i"),
         good.replace("CONFIG", "KONFIG"),
     ] {

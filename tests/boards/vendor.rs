@@ -105,6 +105,12 @@ fn every_script_of_a_vendor_runs_to_its_end_and_its_report_is_read() {
         assert_eq!(code, Some(2), "{board}: {told}");
         assert!(told.contains("hold time"), "{board}: {told}");
     }
+    // A bound that only ISE tells apart from its clocks.
+    let out = dir.path("o");
+    let arguments = ["--board", "papilio_pro", "--out", &out, "--name", "card"];
+    let (code, _, told) = build(&arguments, &path, Some("FAR"));
+    assert_eq!(code, Some(2), "{told}");
+    assert!(told.contains("1 ways of asynchronous inputs"), "{told}");
     let scripts = boards().into_iter().filter(|b| b.family.vendor.is_some());
     let families: std::collections::BTreeSet<_> = scripts.map(|b| b.family.name).collect();
     assert_eq!(

@@ -1,6 +1,6 @@
 #!/usr/bin/env tclsh
 # Stand-ins for the shells of vendors' tools, and for the tools that ISE's shell starts: under each name, its commands as Tcl sees them,
-# called with words that they know and files that exist, and its reports in its form. SLOW and HOLD in the environment spoil the timing.
+# called with words that they know and files that exist, and its reports in its form. SLOW, HOLD and FAR (inputs, ISE) in the environment spoil the timing.
 
 set shell [file tail $argv0]
 set slow [info exists ::env(SLOW)]
@@ -112,6 +112,8 @@ switch $shell {
     ngdbuild {
         must {[lindex $argv 0] eq "-uc"} $argv
         foreach file [lrange $argv 1 2] { must_exist $file }
+        set ucf [open [lindex $argv 1]]
+        must {[regexp -all {NET "\S+_i" TNM = "asynchronous_inputs";} [read $ucf]] == 4} "asynchronous inputs"
         leave [lindex $argv 3] "database"
     }
     map {
@@ -137,6 +139,7 @@ switch $shell {
         must_exist [lindex $argv 4]
         set least [expr {$slow ? 10.4 : 8.0}]
         set holds [expr {$hold ? 2 : 0}]
+        set far [expr {[info exists ::env(FAR)] ? 1 : 0}]
         leave [lindex $argv 3] "Release 14.7 Trace
 ================================================================================
 Timing constraint: TS_osc_i = PERIOD TIMEGRP \"osc_i\" 31.25 ns HIGH 50%;
@@ -153,6 +156,14 @@ For more information, see Period Analysis in the Timing Closure User Guide.
  41522 paths analyzed, 9120 endpoints analyzed, 0 failing endpoints
  0 timing errors detected. (0 setup errors, $holds hold errors, 0 component switching limit errors)
  Minimum period is   ${least}ns.
+--------------------------------------------------------------------------------
+================================================================================
+Timing constraint: TS_asynchronous_inputs = MAXDELAY FROM TIMEGRP
+\"asynchronous_inputs\" TO TIMEGRP \"FFS\" 10 ns DATAPATHONLY;
+
+ 6 paths analyzed, 6 endpoints analyzed, $far failing endpoints
+ $far timing errors detected. ($far setup errors, 0 hold errors)
+ Maximum delay is   4.120ns.
 --------------------------------------------------------------------------------"
     }
     bitgen {
