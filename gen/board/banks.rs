@@ -3,10 +3,36 @@
 use super::family::Family;
 use super::keys;
 use super::package::Word;
-use super::read::Lines;
 use super::Board;
 use crate::form::reader::{At, Table};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// Where something stands in the file.
+#[derive(Clone, Debug)]
+pub struct Stands {
+    /// Its key, with that of its table.
+    pub name: String,
+    /// Its line, counted from 1.
+    pub line: usize,
+}
+
+/// Where a board's pins and standards stand.
+pub struct Lines {
+    /// The standard of all pins but those with their own.
+    pub standard: Stands,
+    /// Pins that are used.
+    pub pins: BTreeMap<String, Stands>,
+    /// Standards of pins that have their own.
+    pub standards: BTreeMap<String, Stands>,
+}
+
+impl Stands {
+    /// A key of a table, at this line.
+    pub fn new(table: &Table<'_, '_>, key: &str, line: usize) -> Self {
+        let name = table.name(key);
+        Self { name, line }
+    }
+}
 
 /// A bank as its table has it.
 pub struct Bank {

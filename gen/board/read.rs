@@ -1,6 +1,6 @@
 //! The way from a board's file to a [`Board`]; every complaint with its line.
 
-use super::banks;
+use super::banks::{self, Lines, Stands};
 use super::family::Family;
 use super::keys::{self, WORD_MAX};
 use super::package::{Package, Word};
@@ -22,32 +22,6 @@ pub fn read(name: &str, file: &str, text: &str, folder: &Path) -> Result<Board, 
     match read_board(&source, name, folder) {
         Some(board) if source.is_good() => Ok(board),
         _ => Err(source.into_diagnostics()),
-    }
-}
-
-/// Where something stands in the file.
-#[derive(Clone, Debug)]
-pub struct Stands {
-    /// Its key, with that of its table.
-    pub name: String,
-    /// Its line, counted from 1.
-    pub line: usize,
-}
-
-/// Where a board's pins and standards stand.
-pub struct Lines {
-    /// The standard of all pins but those with their own.
-    pub standard: Stands,
-    /// Pins that are used.
-    pub pins: BTreeMap<String, Stands>,
-    /// Standards of pins that have their own.
-    pub standards: BTreeMap<String, Stands>,
-}
-
-impl Stands {
-    fn new(table: &Table<'_, '_>, key: &str, line: usize) -> Self {
-        let name = table.name(key);
-        Self { name, line }
     }
 }
 
