@@ -1,5 +1,5 @@
-//! What integrators expect beside the sources: FuseSoC core, timing constraints, Vivado packaging, LiteX module and
-//! Amaranth component, component of Platform Designer, instantiation template, C example.
+//! What integrators expect beside the sources: FuseSoC core, timing constraints, Vivado packaging, LiteX module,
+//! Amaranth component, black box of SpinalHDL, component of Platform Designer, instantiation template, C example.
 
 mod interface;
 
@@ -20,7 +20,7 @@ use rtl_design::elaborate::{Design, Direction};
 use serde::Serialize;
 
 /// End of the file's name, and its template.
-const TEMPLATES: [(&str, &str); 7] = [
+const TEMPLATES: [(&str, &str); 8] = [
     (
         "_ipxact.xml",
         include_str!("templates/integration/ipxact.xml.jinja"),
@@ -43,12 +43,20 @@ const TEMPLATES: [(&str, &str); 7] = [
         "_amaranth.py",
         include_str!("templates/integration/amaranth.py.jinja"),
     ),
+    (
+        "_spinal.scala",
+        include_str!("templates/integration/spinal.scala.jinja"),
+    ),
 ];
-/// Of the buses here, Platform Designer connects APB as it is: of AXI4-Lite it wants signals that this card has no use for.
+/// For the buses that Platform Designer connects.
 const PLATFORM_DESIGNER: (&str, &str) = (
     "_hw.tcl",
     include_str!("templates/integration/hw.tcl.jinja"),
 );
+/// A module around the core with the inputs that Platform Designer wants besides.
+const WRAPPER: &str = "_axi4lite";
+const WRAPPER_VERILOG: &str = include_str!("templates/integration/axi4lite.v.jinja");
+const WRAPPER_VHDL: &str = include_str!("templates/integration/axi4lite.vhd.jinja");
 /// The example reads the card over the UART.
 const EXAMPLE: (&str, &str) = (
     "_example.c",
@@ -87,6 +95,18 @@ fn class_name(name: &str) -> String {
     };
     let class: String = name.split('_').map(part).collect();
     match PYTHON_WORDS.contains(&class.as_str()) {
+        true => class + "Core",
+        false => class,
+    }
+}
+
+/// Classes of Scala and SpinalHDL that the emitted class is made of.
+const SCALA_CLASSES: [&str; 6] = ["Bits", "BlackBox", "Bool", "Bundle", "Seq", "String"];
+
+/// The class in Scala.
+fn scala_class_name(name: &str) -> String {
+    let class = class_name(name);
+    match SCALA_CLASSES.contains(&class.as_str()) {
         true => class + "Core",
         false => class,
     }
@@ -269,8 +289,17 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
         .iter()
         .find(|p| core.has_interrupt && p.name == "irq_o");
     let fastest_hz = core.system_hz.iter().copied().max().unwrap_or_default();
+    let bus = interface::of(core.bus, &ports);
+    let is_in_platform_designer = bus
+        .as_ref()
+        .is_some_and(|b| !b.platform_designer.is_empty());
+    let has_wrapper = bus.as_ref().is_some_and(|b| !b.unused.is_empty());
+    let wrapper = format!("{}{WRAPPER}", core.name);
     let context = context! {
+        unused => Value::from(Serde(bus.as_ref().map_or(&[][..], |b| &b.unused))),
+        wrapper => wrapper.as_str(),
         name => core.name,
+        scala_class => scala_class_name(core.name),
         class => class_name(core.name),
         macro => core.name.to_ascii_uppercase(),
         origin => core.origin(),
@@ -283,7 +312,7 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
         mhz => decimal(fastest_hz as f64 / 1e6, 6),
         period_ns => decimal(1e9 / fastest_hz as f64, 3),
         asynchronous,
-        bus => Value::from(Serde(interface::of(core.bus, &ports))),
+        bus => Value::from(Serde(&bus)),
         interrupt => Value::from(Serde(interrupt)),
         hash => core.hash,
         title => core.title.as_str(),
@@ -303,12 +332,19 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
     let wanted = TEMPLATES
         .iter()
         .chain((core.bus == HostBus::Uart).then_some(&EXAMPLE))
-        .chain((core.bus == HostBus::Apb).then_some(&PLATFORM_DESIGNER));
+        .chain(is_in_platform_designer.then_some(&PLATFORM_DESIGNER));
     let is_verilog_only = |end: &str| end == "_instance.vh";
+    let wrapping = match core.language {
+        Language::Verilog => WRAPPER_VERILOG,
+        Language::Vhdl => WRAPPER_VHDL,
+    };
+    let wrapping = (format!("{WRAPPER}{}", core.language.extension()), wrapping);
     wanted
         .filter(|(end, _)| core.language == Language::Verilog || !is_verilog_only(end))
+        .map(|(end, template)| ((*end).to_owned(), *template))
+        .chain(has_wrapper.then_some(wrapping))
         .map(|(end, template)| {
-            let text = render(end, template, &context)?;
+            let text = render(&end, template, &context)?;
             Ok(Artifact::new(format!("{}{end}", core.name), text))
         })
         .collect()

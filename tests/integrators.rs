@@ -32,7 +32,7 @@ fn emitted(project: &Project, name: &str) -> PathBuf {
 fn sources(folder: &Path) -> Vec<String> {
     let files = fs::read_dir(folder).unwrap();
     let names = files.filter_map(|f| f.ok()?.file_name().into_string().ok());
-    let others = ["_tb.v", "_top.v", "holder.v"];
+    let others = ["_tb.v", "_top.v", "_axi4lite.v", "holder.v"];
     names
         .filter(|f| f.ends_with(".v") && !others.iter().any(|o| f.ends_with(o)))
         .collect()

@@ -17,6 +17,28 @@ pub struct Signal {
     litex: String,
 }
 
+/// An input that nothing looks at.
+#[derive(Serialize)]
+pub struct Unused {
+    name: &'static str,
+    logical: &'static str,
+    width: usize,
+}
+
+/// AXI4-Lite's inputs of that kind.
+const PROTECTION: [Unused; 2] = [
+    Unused {
+        name: "s_axi_awprot",
+        logical: "awprot",
+        width: 3,
+    },
+    Unused {
+        name: "s_axi_arprot",
+        logical: "arprot",
+        width: 3,
+    },
+];
+
 /// A bus interface.
 #[derive(Serialize)]
 pub struct Interface {
@@ -27,6 +49,10 @@ pub struct Interface {
     /// The attributes by which IP-XACT names its bus, and the abstraction of that; empty where it has no addresses of a system.
     ipxact: String,
     ipxact_rtl: String,
+    /// What Platform Designer calls it; empty where it has no such bus.
+    pub platform_designer: &'static str,
+    /// Inputs that Platform Designer asks for and the core has no use for: a module around it has them.
+    pub unused: Vec<Unused>,
     /// The class that LiteX has for it, with its arguments; empty where it has none.
     litex: String,
     /// The module of LiteX with that class.
@@ -94,6 +120,15 @@ pub fn of(bus: HostBus, ports: &[Port]) -> Option<Interface> {
         vivado,
         ipxact: ipxact(""),
         ipxact_rtl: ipxact("_rtl"),
+        platform_designer: match bus {
+            HostBus::Apb => "apb",
+            HostBus::AxiLite => "axi4lite",
+            _ => "",
+        },
+        unused: match bus {
+            HostBus::AxiLite => PROTECTION.into(),
+            _ => vec![],
+        },
         litex,
         litex_module,
         signals: signals.collect(),

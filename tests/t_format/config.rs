@@ -41,6 +41,7 @@ fn the_preset_is_emitted_and_checked() {
         "_vivado.tcl",
         "_litex.py",
         "_amaranth.py",
+        "_spinal.scala",
     ] {
         let file = format!("async_dsp{end}");
         assert!(folder.join(&file).exists(), "{file}");
