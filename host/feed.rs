@@ -117,6 +117,8 @@ pub struct Feed {
     heard: Instant,
     /// What the card was when it was last asked; none behind an error.
     witness: Option<Witness>,
+    /// Its count of triggers then, until it has been compared with the rows.
+    count: Option<u32>,
     /// How often the link had been lost by then.
     reopened: u64,
     /// Sequence numbers of the last row, where results are read.
@@ -134,7 +136,7 @@ impl Feed {
         let streams = card.identity().has(Part::Stream) && !polls;
         let witness = Witness::new(card)?;
         let mut clock = Clock::default();
-        clock.counted(witness.triggers());
+        clock.counted(witness.triggers(), &[]);
         let reopened = card.bridge().transport().state().reopened;
         if streams {
             let at = |register| Place::at("card", register, 0);
@@ -148,6 +150,7 @@ impl Feed {
             lost_in_card: 0,
             heard: Instant::now(),
             witness: Some(witness),
+            count: None,
             reopened,
             sequences: Vec::new(),
         })
@@ -173,9 +176,7 @@ impl Feed {
         self.heard = Instant::now();
         if has_answered {
             self.reopened = link.reopened;
-            if self.streams {
-                self.clock.counted(witness.triggers());
-            }
+            self.count = Some(witness.triggers());
         }
         Ok(has_answered)
     }
@@ -288,12 +289,19 @@ impl Feed {
     ) -> Result<(), HostError> {
         if self.streams {
             let mut sets = card.bridge().pushed(wait)?;
+            // Whoever was silent may have counted on meanwhile, further than a number of 16 bits tells.
+            let was_silent = !sets.is_empty() && self.heard.elapsed() > SILENCE;
             if !sets.is_empty() {
                 self.heard = Instant::now();
             }
-            self.is_the_same(card, false)?;
+            self.is_the_same(card, was_silent)?;
             // Those that came before the answer.
             sets.extend(card.bridge().decoded());
+            if let Some(count) = self.count.take() {
+                let triggers = sets.iter().filter(|set| set.run.is_none());
+                let before: Vec<_> = triggers.map(|s| (s.sequence, s.timestamp)).collect();
+                self.clock.counted(count, &before);
+            }
             for set in sets {
                 self.lost_in_card += u64::from(set.lost);
                 if let Some(channel) = set.run {
@@ -355,6 +363,7 @@ mod tests {
             lost_in_card: 0,
             heard: Instant::now(),
             witness: None,
+            count: None,
             reopened: 0,
             sequences: Vec::new(),
         };

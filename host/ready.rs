@@ -52,16 +52,18 @@ impl<T: Transport> Card<T> {
         all.filter(|n| !identity.is_t_format(*n)).collect()
     }
 
-    /// Waits until no encoder is being initialised, or [`INITIALISATION`]; calls `is_long` once if it takes long.
-    pub fn wait_until_initialised(&mut self, is_long: impl FnOnce()) -> Result<(), HostError> {
+    /// Waits until no encoder is being initialised, or [`INITIALISATION`]; calls `is_long` once if it takes long. Whether one was.
+    pub fn wait_until_initialised(&mut self, is_long: impl FnOnce()) -> Result<bool, HostError> {
         if !self.identity().has(Part::Initialise) {
-            return Ok(());
+            return Ok(false);
         }
+        let mut has_waited = false;
         let begin = Instant::now();
         let mut is_long = Some(is_long);
         for channel in self.endat_channels() {
             let running = self.place(&format!("service{channel}.state.initialising"))?;
             while self.read(&running)? == 1 && begin.elapsed() < INITIALISATION {
+                has_waited = true;
                 if begin.elapsed() > LONG {
                     if let Some(tell) = is_long.take() {
                         tell();
@@ -69,21 +71,33 @@ impl<T: Transport> Card<T> {
                 }
             }
         }
-        Ok(())
+        Ok(has_waited)
     }
 
     /// The same, and waits until every channel has had a first result, or has none after a second.
     pub fn settle(&mut self, is_long: impl FnOnce()) -> Result<(), HostError> {
-        self.wait_until_initialised(is_long)?;
+        let has_waited = self.wait_until_initialised(is_long)?;
+        // Behind an initialisation results are counted on from those before it.
+        let before = match has_waited {
+            true => self.sequences()?,
+            false => vec![0; self.identity().channels],
+        };
         let end = Instant::now() + FIRST_RESULTS;
         while Instant::now() < end {
-            let results = self.results()?;
+            let now = self.sequences()?;
+            let mut steps = now.iter().zip(&before).map(|(n, b)| n.wrapping_sub(*b));
             // The first frame measures the delay; the second one is as all others.
-            if results.channels.iter().all(|r| r.sequence > 1) {
+            if steps.all(|steps| steps > 1) {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// The number of every channel's last result.
+    fn sequences(&mut self) -> Result<Vec<u16>, HostError> {
+        let results = self.results()?;
+        Ok(results.channels.iter().map(|r| r.sequence).collect())
     }
 
     /// Refuses a card that nothing triggers: recording sends nothing by itself, and nobody else has the link. `remedy` says how another source is enabled.

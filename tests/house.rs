@@ -33,6 +33,7 @@ const PORTS: usize = 30;
 const LONGER: &[(&str, usize)] = &[
     ("hdl/card/card_core.rs", 564),
     ("hdl/card/card_core.rs: update", 374),
+    ("hdl/config/card.rs: resolve", 121),
     ("hdl/endat/channel.rs: update", 260),
     ("hdl/endat/line_delay.rs: update", 264),
     ("hdl/endat/line_monitor.rs: update", 206),

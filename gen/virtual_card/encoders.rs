@@ -54,7 +54,18 @@ pub(super) fn encoder(
 ) -> Result<EncoderConfig, GenError> {
     let name = wanted.unwrap_or(&project.encoders[channel]);
     if let Some(device) = DEVICES.iter().find(|d| plain(d.name) == plain(name)) {
-        return Ok(device.encoder());
+        let encoder = device.encoder();
+        let (asked, own) = (
+            project.card.channels[channel].position_bits,
+            encoder.position_bits,
+        );
+        if wanted.is_some() && asked != own && !project.card.service.initialise {
+            return Err(GenError::input(format!(
+                "--encoder = {}: has positions of {own} bits, and channel {channel} asks for {asked}; take another one, or a card with \"initialise\" in service.parts, which asks the encoder",
+                shown(name)
+            )));
+        }
+        return Ok(encoder);
     }
     let known: Vec<&str> = DEVICES.iter().map(|d| d.name).collect();
     if wanted.is_some() {

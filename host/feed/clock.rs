@@ -12,17 +12,53 @@ pub struct Clock {
     above: u32,
     /// How many triggers there have been since the last row, as the card has counted them behind a pause.
     ahead: Option<u32>,
+    /// So many rows on, the number has wrapped unseen, and how often.
+    behind: Option<(usize, u64)>,
+}
+
+/// How often a number has wrapped that has gone on by `low`, seen in 16 bits, while the card has counted about `ahead`.
+fn wraps(ahead: u32, low: u64) -> u64 {
+    (u64::from(ahead) + 0x8000).saturating_sub(low) >> 16
 }
 
 impl Clock {
-    /// Takes the card's own count of triggers: over a pause the number of a trigger may wrap more than once.
-    pub fn counted(&mut self, triggers: u32) {
-        match self.last {
-            None => self.above = triggers,
-            Some(_) => {
-                let ahead = triggers.wrapping_sub(self.above.wrapping_add(self.trigger as u32));
-                self.ahead = Some(ahead).filter(|ahead| *ahead as i32 > 0);
+    /// Takes the card's own count of triggers: over a pause the number of a trigger may wrap more than once. `before` are numbers and
+    /// moments of rows that came before the count did and have not been stepped to: the pause was the host's, or lies among them.
+    pub fn counted(&mut self, triggers: u32, before: &[(u16, u32)]) {
+        let Some((mut number, mut moment)) = self.last else {
+            self.above = triggers;
+            return;
+        };
+        let ahead = triggers.wrapping_sub(self.above.wrapping_add(self.trigger as u32));
+        let ahead = Some(ahead).filter(|ahead| *ahead as i32 > 0);
+        let (mut low, mut longest) = (0, (0, 0));
+        for (n, (next, at)) in before.iter().enumerate() {
+            low += u64::from(next.wrapping_sub(number));
+            let span = at.wrapping_sub(moment);
+            if span > longest.1 {
+                longest = (n, span);
             }
+            (number, moment) = (*next, *at);
+        }
+        match before {
+            [] => self.ahead = ahead,
+            _ => self.behind = ahead.map(|ahead| (longest.0, wraps(ahead, low))),
+        }
+    }
+
+    /// Wraps of the number that is this row's alone to tell.
+    fn unseen_wraps(&mut self, low: u64) -> u64 {
+        let told = self.ahead.take().map_or(0, |ahead| wraps(ahead, low));
+        match self.behind {
+            Some((0, more)) => {
+                self.behind = None;
+                more
+            }
+            Some((rows, more)) => {
+                self.behind = Some((rows - 1, more));
+                told
+            }
+            None => told,
         }
     }
 
@@ -38,9 +74,7 @@ impl Clock {
             }
             Some((last_sequence, last_timestamp)) => {
                 let low = u64::from(sequence.wrapping_sub(last_sequence));
-                let ahead = u64::from(self.ahead.take().unwrap_or(0));
-                let wraps = (ahead + 0x8000).saturating_sub(low) >> 16;
-                let steps = low + (wraps << 16);
+                let steps = low + (self.unseen_wraps(low) << 16);
                 self.trigger += steps;
                 self.cycles = match self.passed {
                     None => self.cycles + u64::from(timestamp.wrapping_sub(last_timestamp)),
@@ -101,20 +135,46 @@ mod tests {
         for begin in [0x0003_0005u32, 0x0002_FFF0, 0xFFFF_FFF0] {
             let mut clock = Clock::default();
             // Asked some triggers before the first row, and some before or after the first one behind the pause.
-            clock.counted(begin.wrapping_sub(20));
+            clock.counted(begin.wrapping_sub(20), &[]);
             clock.step(begin as u16, 0);
             for late in [0, 3, u32::MAX - 2] {
                 let before = clock.trigger;
                 let now = begin.wrapping_add(before as u32 - u32::from(begin as u16) + 100_000);
-                clock.counted(now.wrapping_add(late));
+                clock.counted(now.wrapping_add(late), &[]);
                 assert_eq!(clock.step(now as u16, 0), 99_999, "{begin:#x} {late}");
                 assert_eq!(clock.trigger, before + 100_000);
             }
             // Nothing was missed: the count is that of now.
-            clock.counted(begin.wrapping_add(300_000));
+            clock.counted(begin.wrapping_add(300_000), &[]);
             let next = begin.wrapping_add(300_001) as u16;
             assert_eq!(clock.step(next, 0), 0);
         }
+    }
+
+    /// Catches a pause of the host that is taken for one of the card, and the other way round: rows wait, and the count is of now.
+    #[test]
+    fn rows_that_came_before_the_count_are_not_behind_it() {
+        let rows = |numbers: std::ops::Range<u32>| -> Vec<(u16, u32)> {
+            numbers.map(|n| (n as u16, n * 100)).collect()
+        };
+        // The host has slept over 80 000 triggers, whose rows are all there.
+        let mut clock = Clock::default();
+        clock.counted(0, &[]);
+        clock.step(1, 100);
+        let waiting = rows(2..80_002);
+        clock.counted(80_010, &waiting);
+        for (number, moment) in &waiting {
+            assert_eq!(clock.step(*number, *moment), 0);
+        }
+        assert_eq!(clock.trigger, 80_001);
+        // The card has been silent for 100 000 triggers, and ten rows behind that came before its count.
+        let mut waiting = rows(80_002..80_007);
+        waiting.extend(rows(180_007..180_017));
+        clock.counted(180_020, &waiting);
+        let missing: Vec<u64> = waiting.iter().map(|(n, t)| clock.step(*n, *t)).collect();
+        assert_eq!(missing.iter().sum::<u64>(), 100_000);
+        assert_eq!((missing[5], clock.trigger), (100_000, 180_016));
+        assert_eq!(clock.step(180_017u32 as u16, 18_001_700), 0);
     }
 
     #[test]

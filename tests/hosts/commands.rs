@@ -383,6 +383,17 @@ fn margin_is_what_the_card_has_measured() {
     assert!((130.0..=160.0).contains(&ns), "{ns}");
     assert!(fs::read_to_string(svg).unwrap().contains("sample before"));
     assert_eq!(outcome.messages.len(), 1, "{outcome:?}");
+    // Frames that nothing triggers are not waited for.
+    let still = fs::read_to_string(&toml).unwrap();
+    let line = still.lines().find(|line| line.starts_with("sources = "));
+    let still = still.replace(line.unwrap(), "sources = [\"register\"]");
+    fs::write(&toml, still).unwrap();
+    let outcome = run(&["margin", "--frames", "30", "--port", &port]);
+    assert_eq!(outcome.exit_code, 1, "{outcome:?}");
+    assert!(
+        outcome.messages[0].contains("only trigger_now triggers"),
+        "{outcome:?}"
+    );
     let none = with(&["margin"], PORT);
     assert_eq!(none.exit_code, 2);
     assert!(none.messages[0].contains("no part `margin`"), "{none:?}");
@@ -511,6 +522,11 @@ fn what_cannot_be_is_told_with_a_remedy() {
             2,
             "channel 0 speaks EnDat; the devices there are RCN 8510",
         ),
+        (
+            &["card", "--encoder", "LC-416"],
+            2,
+            "has positions of 36 bits, and channel 0 asks for 29; take another one, or a card with \"initialise\"",
+        ),
         (&["card", "--cable-m", "-3"], 2, "--cable-m"),
     ] {
         let outcome = run(arguments);
@@ -520,4 +536,27 @@ fn what_cannot_be_is_told_with_a_remedy() {
             "{arguments:?}: {outcome:?}"
         );
     }
+}
+
+/// Catches a sum that overflows: whatever stands in a file, its reader ends in a word.
+#[test]
+fn counts_of_a_strange_file_end_in_no_panic() {
+    let folder = tools::folder("host_strange");
+    let file = folder.join("strange.csv");
+    let most = u64::MAX;
+    let text = format!(
+        "trigger,time_s,missing,ch0_raw,ch0_deg,ch0_turns,ch0_fresh,ch0_cause\n\
+         1,0.0,{most},5,0.1,0,1,none\n2,0.1,{most},6,0.1,0,1,none\n"
+    );
+    fs::write(&file, text).unwrap();
+    let file = file.to_str().unwrap();
+    let svg = folder.join("strange.svg");
+    for command in [
+        vec!["stats", file],
+        vec!["plot", file, "-o", svg.to_str().unwrap()],
+    ] {
+        let outcome = run(&command);
+        assert!(outcome.exit_code < 2, "{outcome:?}");
+    }
+    assert!(fs::read_to_string(svg).unwrap().contains(&most.to_string()));
 }

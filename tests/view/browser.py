@@ -144,7 +144,10 @@ try:
     # Dark and narrow: nothing sticks out.
     one("#theme").click()
     assert browser.execute_script("return document.documentElement.dataset.theme") == "dark"
-    browser.set_window_size(500, 1600)
+    phone = {"width": 390, "height": 1600, "deviceScaleFactor": 2, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
+    one("[data-tab=causes]").click()
+    until("causes of the requests above", lambda: "not_taken" in text("#causes"))
     time.sleep(1)
     browser.save_screenshot(f"{folder}/narrow.png")
     wide = browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")

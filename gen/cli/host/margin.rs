@@ -2,7 +2,7 @@
 
 use super::super::pictures::{write_all, File};
 use super::super::{to_json, Outcome};
-use super::{channel, told, AnyCard, PortArgs};
+use super::{channel, needs_trigger, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use crate::number::number_if;
 use clap::Args;
@@ -12,7 +12,7 @@ use endat_regs::Part;
 use endat_sim::diagram::{edges_svg, is_drawing, Edges};
 use serde_json::json;
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Arguments of `margin`.
 #[derive(Args)]
@@ -35,8 +35,8 @@ pub struct MarginArgs {
 
 /// Bins of the histogram.
 const BINS: usize = 32;
-/// Longest wait for the frames that are asked for.
-const WAIT: Duration = Duration::from_secs(600);
+/// Longest wait for a frame.
+const WAIT: Duration = Duration::from_secs(20);
 
 /// Refuses a channel whose margin the card does not measure.
 pub fn needs(card: &AnyCard, channel: usize) -> Result<(), HostError> {
@@ -105,13 +105,18 @@ pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
     };
     if let Some(frames) = frames {
         super::settled(&mut card)?;
+        needs_trigger(&mut card, &arguments.port)?;
         card.write(&at("clear.clear")?, 1).map_err(told)?;
-        let counted = at("frames")?;
-        let end = std::time::Instant::now() + WAIT;
-        while card.read(&counted).map_err(told)? < frames {
-            if std::time::Instant::now() > end {
+        let place = at("frames")?;
+        let (mut counted, mut heard) = (0, Instant::now());
+        while counted < frames {
+            let now = card.read(&place).map_err(told)?;
+            if now != counted {
+                (counted, heard) = (now, Instant::now());
+            }
+            if heard.elapsed() > WAIT {
                 return Err(GenError::CheckFailed(vec![format!(
-                    "--frames = {frames}: not counted within {} s; is a trigger enabled?",
+                    "--frames = {frames}: no frame for {} s, {counted} were counted; does the trigger come, is the encoder plugged in?",
                     WAIT.as_secs()
                 )]));
             }

@@ -130,6 +130,15 @@ pub fn settled(card: &mut AnyCard) -> Result<(), GenError> {
     card.settle(long).map_err(told)
 }
 
+/// Refuses a card that nothing triggers, with the command that mends it.
+pub fn needs_trigger(card: &mut AnyCard, port: &PortArgs) -> Result<(), GenError> {
+    let remedy = format!(
+        "as with `endat-gen reg write card_config.trigger_sources.timer 1 --port {}`",
+        port.name()
+    );
+    card.needs_trigger(&remedy).map_err(told)
+}
+
 /// Raised by Ctrl-C.
 pub fn interrupted() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));

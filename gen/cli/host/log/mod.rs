@@ -6,7 +6,7 @@ mod progress;
 use super::super::pictures::{check_all, folder, write_all, File};
 use super::super::work::{say, Progress};
 use super::super::Outcome;
-use super::{interrupted, patiently, settled, told, AnyCard};
+use super::{interrupted, needs_trigger, patiently, place, settled, told, AnyCard};
 use crate::error::GenError;
 use crate::number::{decimal_if, number_if};
 use crate::recording::count::{Count, Judge};
@@ -33,6 +33,8 @@ const BAD_MAX_PERCENT: f64 = 1.0;
 const SLICE: Duration = Duration::from_millis(100);
 /// Rows stand in a file after so long at most.
 const FLUSH: Duration = Duration::from_secs(1);
+/// A card whose timer runs, and that is silent for so long, has stopped.
+const STOPPED: Duration = Duration::from_secs(2);
 
 /// When to stop.
 struct End {
@@ -80,11 +82,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     check_all(&rows.iter().chain(&drawing).collect::<Vec<_>>())?;
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let remedy = format!(
-        "as with `endat-gen reg write card_config.trigger_sources.timer 1 --port {}`",
-        arguments.port.name()
-    );
-    card.needs_trigger(&remedy).map_err(told)?;
+    needs_trigger(&mut card, &arguments.port)?;
     let judge = Judge {
         own_triggers: card.identity().has(Part::OwnTrigger),
     };
@@ -100,6 +98,8 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
             folder.display()
         ));
     }
+    let timer = place(&card, "card_config.trigger_sources.timer")?;
+    let has_timer = card.read(&timer).map_err(told)? == 1;
     let begin = || Feed::begin(&mut card, arguments.poll).map_err(told);
     let mut feed = patiently(arguments.port.name(), begin)?;
     let mut count = Count::new(judge);
@@ -121,7 +121,15 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
             count.bad_percent()
         ));
     }
-    let mut exit_code = u8::from(is_bad || is_stream && count.missing > 0);
+    // What comes by itself had stopped.
+    let has_stopped = has_timer && result.as_ref().is_ok_and(|silent| *silent > STOPPED);
+    if let Some(silent) = result.as_ref().ok().filter(|_| has_stopped) {
+        messages.push(format!(
+            "nothing came for the last {:.1} s: triggers of that time are not counted as missing; is the card plugged in, is its timer still enabled?",
+            silent.as_secs_f64()
+        ));
+    }
+    let mut exit_code = u8::from(is_bad || is_stream && count.missing > 0 || has_stopped);
     let mut fail = |error: GenError, messages: &mut Vec<String>| {
         exit_code = exit_code.max(error.exit_code());
         messages.extend_from_slice(error.messages());
@@ -135,7 +143,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
             fail(GenError::input(text), &mut messages);
         }
         Err(Failure::Card(e)) => fail(e, &mut messages),
-        Ok(()) => {
+        Ok(_) => {
             if let Err(error) = calm {
                 fail(told(error), &mut messages);
             }
@@ -274,7 +282,7 @@ fn record(
     recorder: Recorder,
     count: &mut Count,
     end: &End,
-) -> (Result<(), Failure>, Recorder) {
+) -> (Result<Duration, Failure>, Recorder) {
     let (give, take) = channel();
     let waiting = Arc::new(AtomicUsize::new(0));
     let queue = Queue {
@@ -289,16 +297,18 @@ fn record(
     let (written, recorder) = writer
         .join()
         .unwrap_or_else(|e| std::panic::resume_unwind(e));
-    (taken.and(written.map_err(Failure::Write)), recorder)
+    let taken = taken.and_then(|silent| written.map(|()| silent).map_err(Failure::Write));
+    (taken, recorder)
 }
 
+/// Gives how long nothing had come at the end.
 fn take_rows(
     card: &mut AnyCard,
     feed: &mut Feed,
     queue: &Queue,
     (count, progress): (&mut Count, &Progress),
     end: &End,
-) -> Result<(), Failure> {
+) -> Result<Duration, Failure> {
     let stop = interrupted();
     let begin = Instant::now();
     let mut heard = begin;
@@ -323,7 +333,7 @@ fn take_rows(
             || end.samples == Some(count.rows)
             || (end.seconds).is_some_and(|s| begin.elapsed() >= Duration::from_secs(s));
         if is_over || stop.load(Ordering::Relaxed) {
-            return Ok(());
+            return Ok(heard.elapsed());
         }
         if heard.elapsed() > SILENCE {
             let why = match watch.last.is_open {

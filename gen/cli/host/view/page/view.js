@@ -118,9 +118,9 @@ function shown() {
     box.hand.style.display = isNone || value === null || !channel.wraps_at ? "none" : "";
     if (channel.wraps_at) box.hand.setAttribute("transform", `rotate(${(value || 0) / channel.wraps_at * 360})`);
     const wrong = one.cause && one.cause !== "none";
-    // One that takes no trigger has a cause for that: the one that came most often.
-    const most = Object.entries(one.counts).filter(([name]) => name !== "not_taken").sort((a, b) => b[1] - a[1])[0];
-    const why = one.cause === "not_taken" && most ? most[0] : one.cause;
+    // One that brings nothing has a cause for that: the one that came most often.
+    const most = Object.entries(one.counts).filter(([name]) => !NO_CAUSES.includes(name)).sort((a, b) => b[1] - a[1])[0];
+    const why = NO_CAUSES.includes(one.cause) && most ? most[0] : one.cause;
     box.state.textContent = old ? "old" : one.fresh ? (wrong ? one.cause : "good") : one.cause === null ? "none yet" : `${isNone ? "none" : "held"}: ${why}`;
     box.state.className = "pill " + (old ? "bad" : one.fresh ? (wrong ? "warn" : "good") : "bad");
     const about = [];
@@ -156,7 +156,14 @@ const LANE = 11;
 // No green: nothing here is good.
 const MARKS = ["#d32f2f", "#f57c00", "#8e24aa", "#c2185b", "#8d6e63", "#fbc02d", "#ff7043", "#ad1457"];
 const NO_RESULT = "#78909c";
-const markOf = (name) => ["not_taken", "too_late", "late"].includes(name) ? NO_RESULT : MARKS[[...name].reduce((sum, c) => (sum * 31 + c.charCodeAt(0)) >>> 0, 7) % MARKS.length];
+const NO_CAUSES = ["not_taken", "too_late", "late"];
+// In the order in which they come, so that the first eight differ.
+const marked = new Map();
+function markOf(name) {
+  if (NO_CAUSES.includes(name)) return NO_RESULT;
+  if (!marked.has(name)) marked.set(name, MARKS[marked.size % MARKS.length]);
+  return marked.get(name);
+}
 let pointer = null;
 
 function wanted() {
@@ -263,6 +270,19 @@ function drawn(pen, box, lines, x, middle) {
   return digits;
 }
 
+// What the colours of the lanes are.
+function legend(names) {
+  const told = names.join();
+  if ($("legend").dataset.told === told) return;
+  $("legend").dataset.told = told;
+  $("legend").replaceChildren(...names.map((name) => {
+    const item = make("span", name), mark = make("i", "");
+    mark.style.background = markOf(name);
+    item.prepend(mark);
+    return item;
+  }));
+}
+
 function draw() {
   const canvas = $("plot"), ratio = devicePixelRatio || 1;
   const width = canvas.clientWidth, height = canvas.clientHeight;
@@ -307,16 +327,7 @@ function draw() {
     pen.fillStyle = ink("quiet"); pen.textAlign = "right"; pen.textBaseline = "middle";
     pen.fillText("causes " + n, box.x - 6, under + n * LANE + LANE / 2);
   });
-  // What the colours of the lanes are.
-  const seen = [...new Set(plot.causes.flat().flatMap(([, names]) => names))];
-  pen.textAlign = "right"; pen.textBaseline = "top";
-  let end = box.x + box.w - 4;
-  for (const name of seen) {
-    pen.fillStyle = ink("quiet"); pen.fillText(name, end, box.y + 4);
-    end -= pen.measureText(name).width + 14;
-    pen.fillStyle = markOf(name); pen.fillRect(end, box.y + 5, 10, 10);
-    end -= 8;
-  }
+  legend([...new Set(plot.causes.flat().flatMap(([, names]) => names))]);
   if (pointer !== null && pointer >= box.x && pointer <= box.x + box.w) {
     pen.strokeStyle = ink("ink"); pen.beginPath(); pen.moveTo(pointer, box.y); pen.lineTo(pointer, under + lanes - 6); pen.stroke();
     const i = Math.min(plot.buckets - 1, Math.floor((pointer - box.x) / box.w * plot.buckets));
