@@ -219,7 +219,7 @@ impl Stats {
     /// Takes a row.
     pub fn push(&mut self, row: &Measurement) {
         self.rows += 1;
-        self.missing = self.missing.saturating_add(row.missing);
+        self.missing += row.missing;
         self.gaps += u64::from(row.missing > 0);
         let first = self.times_s.map_or(row.time_s, |t| t.0);
         self.times_s = Some((first, row.time_s));

@@ -65,7 +65,7 @@ pub fn run(arguments: &PlotArgs) -> Result<Outcome, GenError> {
         let picture = picture.get_or_insert_with(new);
         if (from..=to).contains(&row.time_s) {
             rows += 1;
-            missing = missing.saturating_add(row.missing);
+            missing += row.missing;
             picture.push(&row);
         }
     })?;

@@ -64,6 +64,9 @@ struct Cell {
     cause: Cow<'static, str>,
 }
 
+/// Most triggers that a row can tell to be missing: the card's own count has 32 bits.
+const MISSING_MAX: u64 = u32::MAX as u64;
+
 /// A row as a file has it.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Parsed {
@@ -312,6 +315,13 @@ impl Reader {
                 row.line,
                 format!("time_s = {time_s}: is no time"),
             ));
+        }
+        if row.missing > MISSING_MAX {
+            let text = format!(
+                "missing = {}: a card counts triggers up to {MISSING_MAX}; is the file damaged?",
+                row.missing
+            );
+            return Err(Wrong::at(row.line, text));
         }
         if row.trigger.is_some() {
             if let Some(last) = self.last_s.filter(|last| time_s < *last) {
