@@ -2,8 +2,9 @@
 
 use endat_gen::cli::{self, Outcome};
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
 
 /// A folder of its own for one test, emptied before use.
 pub struct Dir(pub PathBuf);
@@ -67,4 +68,14 @@ pub fn bad(arguments: &[&str], exit_code: u8) -> String {
 
 pub fn program() -> Command {
     Command::new(env!("CARGO_BIN_EXE_endat-gen"))
+}
+
+/// The program, left running, and the line that it begins with.
+pub fn begun(command: &mut Command) -> (Child, String) {
+    let quiet = command.stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut program = quiet.spawn().unwrap();
+    let mut line = String::new();
+    let mut told = BufReader::new(program.stdout.take().unwrap());
+    told.read_line(&mut line).unwrap();
+    (program, line)
 }

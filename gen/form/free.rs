@@ -35,19 +35,32 @@ impl<'s, 't> Table<'s, 't> {
         };
         let mut all = Vec::new();
         for item in array.iter() {
-            let Some(integer) = item.get_ref().as_integer() else {
-                self.wrong_type(key, item, "a whole number");
-                continue;
-            };
-            match u64::from_str_radix(integer.as_str(), integer.radix()) {
-                Ok(value) => all.extend(self.at(value, item)),
-                Err(_) => {
-                    let line = self.source.line(item.span().start);
-                    self.complain(line, key, &self.excerpt(&item.span()), limits);
-                }
-            }
+            all.extend(self.whole(key, item, |_| true, limits));
         }
         Some(all)
+    }
+
+    /// A whole number that fits; `limits` are told of one that does not, is negative or beyond every number.
+    fn whole(
+        &self,
+        key: &str,
+        item: &Spanned<DeValue<'_>>,
+        fits: impl Fn(u64) -> bool,
+        limits: &str,
+    ) -> Option<At<u64>> {
+        let Some(integer) = item.get_ref().as_integer() else {
+            self.wrong_type(key, item, "a whole number");
+            return None;
+        };
+        let value = u64::from_str_radix(integer.as_str(), integer.radix());
+        match value.ok().filter(|value| fits(*value)) {
+            Some(value) => self.at(value, item),
+            None => {
+                let line = self.source.line(item.span().start);
+                self.complain(line, key, &self.excerpt(&item.span()), limits);
+                None
+            }
+        }
     }
 
     /// Every key with its text, for tables whose keys are names of things.
@@ -70,23 +83,9 @@ impl<'s, 't> Table<'s, 't> {
         let mut all = Vec::new();
         for (key, spanned) in self.table.iter() {
             let name = key.get_ref();
-            let Some(integer) = spanned.get_ref().as_integer() else {
-                self.wrong_type(name, spanned, "a whole number");
-                continue;
-            };
-            let value = u64::from_str_radix(integer.as_str(), integer.radix());
-            match value.ok().filter(|value| limits.contains(*value)) {
-                Some(value) => all.extend(self.at(value, spanned).map(|at| (name.to_string(), at))),
-                None => {
-                    let line = self.source.line(spanned.span().start);
-                    self.complain(
-                        line,
-                        name,
-                        &self.excerpt(&spanned.span()),
-                        &limits.to_string(),
-                    );
-                }
-            }
+            let fits = |value| limits.contains(value);
+            let found = self.whole(name, spanned, fits, &limits.to_string());
+            all.extend(found.map(|at| (name.to_string(), at)));
         }
         all
     }

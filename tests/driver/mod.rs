@@ -6,15 +6,13 @@ mod rig;
 mod t_format;
 mod world;
 
-use crate::program::{bad, good, Dir};
+use crate::program::{self, bad, begun, good, Dir};
 use crate::tools;
 use endat_gen::config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_sim::encoder::Defect;
 use rig::{Rig, ALL_PARTS};
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 use std::sync::OnceLock;
 
 /// Where the driver lies.
@@ -180,16 +178,14 @@ fn examples_and_the_page_compile() {
 
 /// The same program on a desk, by the command of its first lines: another card, which runs slower than it thinks.
 fn on_a_simulated_card(program: &str, folder: &Path) {
-    let mut card = crate::program::program()
-        .args(["card", "--preset", "artinchip_endat_if"])
-        .args(["--tcp", "127.0.0.1:0"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let mut name = String::new();
-    let mut lines = BufReader::new(card.stdout.take().unwrap());
-    lines.read_line(&mut name).unwrap();
+    let arguments = [
+        "card",
+        "--preset",
+        "artinchip_endat_if",
+        "--tcp",
+        "127.0.0.1:0",
+    ];
+    let (mut card, name) = begun(program::program().args(arguments));
     let port = name.trim().rsplit(':').next().unwrap();
     let (is_good, text) = tools::run(program, folder, &["tcp", "127.0.0.1", port]);
     card.kill().unwrap();

@@ -1,15 +1,15 @@
 //! The live page: what it is answered, whom it refuses, what becomes of it when a card goes, and how it is in a browser.
 
 use crate::hosts::{slow_card, Served};
-use crate::program::Dir;
+use crate::program::{self, begun, Dir};
 use crate::tools;
 use endat_gen::virtual_card::Door;
 use endat_sim::rng::Rng;
 use serde_json::Value;
 use std::fs;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -28,17 +28,9 @@ struct View {
 impl View {
     fn new(name: &str, port: &str, more: &[&str]) -> Self {
         let dir = Dir::new(name);
-        let mut program = Command::new(env!("CARGO_BIN_EXE_endat-gen"))
-            .args(["view", "--port", port])
-            .args(more)
-            .current_dir(&dir.0)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        let mut told = BufReader::new(program.stdout.take().unwrap());
-        told.read_line(&mut line).unwrap();
+        let mut command = program::program();
+        let command = command.args(["view", "--port", port]).args(more);
+        let (program, line) = begun(command.current_dir(&dir.0));
         let (_, url) = line.split_once("http://").expect(&line);
         // Where it listens for all, the name of the machine is for the user to know.
         let address = url.split('/').next().unwrap().replace("NAME", "127.0.0.1");

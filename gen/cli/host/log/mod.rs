@@ -122,14 +122,15 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         ));
     }
     // What comes by itself had stopped.
-    let has_stopped = has_timer && result.as_ref().is_ok_and(|silent| *silent > STOPPED);
-    if let Some(silent) = result.as_ref().ok().filter(|_| has_stopped) {
+    let silent = result.as_ref().ok().copied();
+    let stopped = silent.filter(|silent| has_timer && *silent > STOPPED);
+    if let Some(silent) = stopped {
         messages.push(format!(
             "nothing came for the last {:.1} s: triggers of that time are not counted as missing; is the card plugged in, is its timer still enabled?",
             silent.as_secs_f64()
         ));
     }
-    let mut exit_code = u8::from(is_bad || is_stream && count.missing > 0 || has_stopped);
+    let mut exit_code = u8::from(is_bad || is_stream && count.missing > 0 || stopped.is_some());
     let mut fail = |error: GenError, messages: &mut Vec<String>| {
         exit_code = exit_code.max(error.exit_code());
         messages.extend_from_slice(error.messages());

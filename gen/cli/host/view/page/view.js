@@ -158,11 +158,11 @@ const MARKS = ["#d32f2f", "#f57c00", "#8e24aa", "#c2185b", "#8d6e63", "#fbc02d",
 const NO_RESULT = "#78909c";
 const NO_CAUSES = ["not_taken", "too_late", "late"];
 // In the order in which they come, so that the first eight differ.
-const marked = new Map();
+const markOfCause = new Map();
 function markOf(name) {
   if (NO_CAUSES.includes(name)) return NO_RESULT;
-  if (!marked.has(name)) marked.set(name, MARKS[marked.size % MARKS.length]);
-  return marked.get(name);
+  if (!markOfCause.has(name)) markOfCause.set(name, MARKS[markOfCause.size % MARKS.length]);
+  return markOfCause.get(name);
 }
 let pointer = null;
 
