@@ -5,17 +5,18 @@
 
 mod bundle;
 mod connect;
+mod parts;
 
 use proc_macro::TokenStream;
 use proc_macro2::{Ident, TokenStream as TokenStream2};
-use quote::{format_ident, quote, quote_spanned};
+use quote::{format_ident, quote, quote_spanned, ToTokens};
 use std::collections::BTreeSet;
 use syn::punctuated::Punctuated;
 use syn::visit::{visit_angle_bracketed_generic_arguments, visit_expr_field, Visit};
 use syn::{
     parse_macro_input, AngleBracketedGenericArguments, Attribute, Data, DeriveInput, Expr,
-    ExprField, Field, Fields, GenericArgument, GenericParam, ItemFn, Lit, LitStr, Member, Token,
-    Type, TypePath,
+    ExprField, Field, Fields, GenericArgument, GenericParam, ImplItem, Item, ItemFn, Lit, LitStr,
+    Member, Token, Type, TypePath,
 };
 
 /// The parts of a block, and what is written about them. Signals and bundles begin empty, registers with 0 or what `#[start(...)]` says,
@@ -322,20 +323,65 @@ pub fn ports(arguments: TokenStream, item: TokenStream) -> TokenStream {
 /// second where they have two.
 ///
 /// `#[kernel(clk_i, rst_i)]` where clock and reset have other names than `clock` and `reset`. Registers in lists are the kernel's.
+///
+/// A long kernel is said in parts: `#[kernel]` stands on the whole `impl Logic for ...`, whose other functions are written out where
+/// `update` or one of them calls them, as a statement or as the arm of a match:
+///
+/// ```ignore
+/// #[kernel]
+/// impl Logic for Timer {
+///     fn update(&mut self) {
+///         self.count();
+///         match self.state.q.val() {
+///             State::Waiting => self.wait(),
+///             _ => {}
+///         }
+///     }
+///
+///     /// Cycles since the start.
+///     fn count(&mut self) {
+///         self.cycles.d.next = self.cycles.q.val() + 1;
+///     }
+///
+///     /// The end of the time.
+///     fn wait(&mut self) { /* ... */ }
+/// }
+/// ```
 #[proc_macro_attribute]
 pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let parser = Punctuated::<Ident, Token![,]>::parse_terminated;
-    let names = parse_macro_input!(arguments with parser);
-    let mut item = parse_macro_input!(item as ItemFn);
-    if let Err(wrong) = connect::expand(&mut item.block) {
-        return wrong.into_compile_error().into();
-    }
+    let names: Vec<Ident> = parse_macro_input!(arguments with parser)
+        .into_iter()
+        .collect();
+    let expanded = match parse_macro_input!(item as Item) {
+        Item::Fn(kernel) => whole_kernel(names, kernel),
+        Item::Impl(mut block) => parts::kernel_of(&mut block)
+            .and_then(|kernel| whole_kernel(names, kernel))
+            .map(|kernel| {
+                block.items.push(ImplItem::Verbatim(kernel));
+                block.into_token_stream()
+            }),
+        other => Err(syn::Error::new_spanned(
+            other,
+            "a kernel is `fn update`, or `impl Logic` with it and its parts",
+        )),
+    };
+    expanded
+        .unwrap_or_else(|wrong| wrong.into_compile_error())
+        .into()
+}
+
+/// What stands in the block for this kernel.
+fn whole_kernel(names: Vec<Ident>, mut item: ItemFn) -> syn::Result<TokenStream2> {
+    connect::expand(&mut item.block)?;
     let usual = || ["clock", "reset"].map(|name| Ident::new(name, proc_macro2::Span::call_site()));
-    let names: Vec<Ident> = names.into_iter().collect();
     let [clock, reset] = match &names[..] {
         [] => usual(),
         [clock, reset] => [clock.clone(), reset.clone()],
-        [one, ..] => return refuse(one, "kernel takes two names, of clock and reset"),
+        [one, ..] => {
+            let text = "kernel takes two names, of clock and reset";
+            return Err(syn::Error::new(one.span(), text));
+        }
     };
     let mut found = Assigned::default();
     found.visit_block(&item.block);
@@ -353,15 +399,14 @@ pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
         },
     };
     *item.block = syn::parse_quote!({ #setup #(#statements)* });
-    quote! {
+    Ok(quote! {
         #[hdl_gen]
         #item
 
         fn timing(&self) -> Vec<TimingInfo> {
             ::rtl_design::elaborate::docs::timing(&<Self as ::rtl_design::elaborate::docs::Described>::DOCS)
         }
-    }
-    .into()
+    })
 }
 
 /// The registers that a kernel assigns, in the order in which it does.

@@ -179,14 +179,21 @@ impl Stream {
 
 // rust-hdl's macro drops match guards.
 #[allow(clippy::collapsible_match)]
+#[kernel]
 impl Logic for Stream {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, buffer);
         self.buffer.reset.next = self.reset.val();
         self.spoilt.reset.next = self.trigger.val();
+        self.close_set();
+        self.take_run();
+        self.put_bytes();
+        self.answer_host();
+        self.push();
+    }
 
-        // The set under way. The number of its trigger is there a cycle after the trigger.
+    /// The set under way. The number of its trigger is there a cycle after the trigger.
+    fn close_set(&mut self) {
         self.first.d.next = self.trigger.val();
         if self.trigger.val() {
             self.moment.d.next = self.timestamp.val();
@@ -226,8 +233,10 @@ impl Logic for Stream {
         if self.lost_now.val() & !self.lost_all.q.val().all() {
             self.lost_all.d.next = self.lost_all.q.val() + 1;
         }
+    }
 
-        // A position of a running clock, when no set of a trigger wants the buffer, one channel after the other.
+    /// A position of a running clock, when no set of a trigger wants the buffer, one channel after the other.
+    fn take_run(&mut self) {
         for i in 0..self._runs {
             connect!(self.turn[i] <= self; clock, reset);
             connect!(self.is_run[i] <= self; clock, reset);
@@ -280,7 +289,10 @@ impl Logic for Stream {
         for i in 0..self._seconds {
             self.second[i].next = self.buffer.second[i].val();
         }
+    }
 
+    /// Bytes of a set.
+    fn put_bytes(&mut self) {
         // Its bytes.
         connect!(self <= self.buffer; block, byte_at);
         self.head_byte.reset.next = self.buffer.block.val().any();
@@ -316,7 +328,10 @@ impl Logic for Stream {
             }
         }
         self.buffer.set_byte.next = self.head_byte.q.val() | self.channel_byte.val();
+    }
 
+    /// The host's words.
+    fn answer_host(&mut self) {
         // The host's words.
         self.reads.next = self.access.val() & self.selected.val() & !self.write.val();
         self.writes.next = self.access.val() & self.selected.val() & self.write.val();
@@ -369,8 +384,10 @@ impl Logic for Stream {
             }
         }
         self.read_byte.next = self.byte_read.q.val();
+    }
 
-        // The other end. A frame goes one way from its first byte to its last.
+    /// The other end. A frame goes one way from its first byte to its last.
+    fn push(&mut self) {
         self.pushed.push.next = self.push_on.q.val();
         self.pushed.in_frame.next = self.pushing.q.val();
         self.pushed.push_byte.next = self.buffer.data.val();

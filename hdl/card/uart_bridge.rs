@@ -116,13 +116,24 @@ impl UartBridge {
     }
 }
 
+#[kernel]
 impl Logic for UartBridge {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, receiver, transmitter);
         self.receiver.reset.next = self.reset.val();
         self.transmitter.reset.next = self.reset.val();
+        self.share_line();
+        self.begin_cycle();
+        self.go_on();
+        self.count();
+        self.step_address();
+        self.take_data();
+        self.give_up();
+        self.ask();
+    }
 
+    /// Answers and the stream, on one line.
+    fn share_line(&mut self) {
         self.receiver.rx.next = self.rx.val();
         // A frame that has begun goes first; none begins while an answer is due.
         self.from_stream.next =
@@ -146,7 +157,10 @@ impl Logic for UartBridge {
             self.marked.d.next = true;
         }
         self.tx.next = self.transmitter.tx.val();
+    }
 
+    /// What a cycle begins with.
+    fn begin_cycle(&mut self) {
         self.last_lane.next = self.byte_lane.q.val().all();
         // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
         self.last_word.d.next = self.words_left.q.val() == 1;
@@ -159,7 +173,10 @@ impl Logic for UartBridge {
         self.next_lane.next = false;
         self.high_bits.next = self.receiver.data.val().any();
         self.stop_timer.d.next = self.receiver.strobe.val();
+    }
 
+    /// The order of a command.
+    fn go_on(&mut self) {
         match self.state.q.val() {
             BridgeState::Command => {
                 self.stop_timer.d.next = true;
@@ -236,6 +253,10 @@ impl Logic for UartBridge {
                 self.state.d.next = BridgeState::Discard;
             }
         }
+    }
+
+    /// Bytes and words.
+    fn count(&mut self) {
         if self.next_lane.val() {
             self.byte_lane.d.next = self.byte_lane.q.val() + 1;
         }
@@ -248,7 +269,10 @@ impl Logic for UartBridge {
                 }
             }
         }
+    }
 
+    /// The address. That of a written word stays until its access has ended.
+    fn step_address(&mut self) {
         // A written word keeps its address until its access has ended.
         if self.bank.done.val() & self.writing.q.val() {
             self.step_address.d.next = !self.fixed.q.val();
@@ -279,8 +303,10 @@ impl Logic for UartBridge {
                 }
             }
         }
+    }
 
-        // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
+    /// The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
+    fn take_data(&mut self) {
         if self.access_now.q.val() & self.writing.q.val() {
             self.write_busy.d.next = true;
         }
@@ -298,7 +324,10 @@ impl Logic for UartBridge {
         if self.data_moves.val() | self.bank.take_byte.val() {
             self.data.d.next = (self.data.q.val() << 8) | bit_cast::<32, 8>(self.next_byte.q.val());
         }
+    }
 
+    /// What ends a command before its time.
+    fn give_up(&mut self) {
         if self.bank.done.val() & (self.state.q.val() == BridgeState::Read) {
             self.byte_ready.d.next = true;
         }
@@ -325,7 +354,10 @@ impl Logic for UartBridge {
             self.access_next.d.next = false;
             self.state.d.next = BridgeState::Command;
         }
+    }
 
+    /// The access.
+    fn ask(&mut self) {
         self.bank.word_address.next = self.address.q.val();
         self.bank.in_range.next = !self.out_of_range.q.val();
         self.bank.lane.next = self.byte_lane.q.val();

@@ -76,47 +76,7 @@ impl CardDraft {
                 format!("is too slow for the steps of an initialisation; use at least {INITIALISE_HZ_MIN} Hz, or leave \"initialise\" out of service.parts"),
             );
         }
-        let mut channels = Vec::new();
-        for (index, channel) in self.channels.iter().flatten().enumerate() {
-            let own = channel.as_ref().and_then(|c| c.trigger);
-            if let Some(own) = own {
-                let mut check = Check {
-                    section: Section::Channel(index),
-                    problems: &mut problems,
-                };
-                check.within("divider", own.divider, &limits("divider", None));
-            }
-            match channel
-                .as_ref()
-                .map(|c| ChannelConfig::resolve(c, system_hz, self.line.double_edge, index))
-            {
-                Some(Ok(channel)) => {
-                    let parts = [
-                        (
-                            self.service.requests,
-                            ("requests", "additional data take", REQUESTS_PERIOD_MIN),
-                        ),
-                        (
-                            self.service.continuous,
-                            (
-                                "continuous",
-                                "continuous clock takes",
-                                CONTINUOUS_PERIOD_MIN,
-                            ),
-                        ),
-                    ];
-                    let is_endat = channel.is_endat();
-                    for (is_wanted, part) in parts {
-                        if is_endat && is_wanted && channel.period_cycles < part.2 {
-                            problems.push(too_fast_for(index, &channel, system_hz, part));
-                        }
-                    }
-                    channels.push((index, channel));
-                }
-                Some(Err(more)) => problems.extend(more),
-                None => {}
-            }
-        }
+        let channels = self.resolve_channels(&mut problems, system_hz);
         let sample_period_cycles = self.check_sampling(&mut problems, system_hz, &channels);
         let uart_bit_cycles = self.check_link(&mut problems, system_hz, count);
         // A rate that is refused itself says nothing about what fits.
@@ -159,6 +119,56 @@ impl CardDraft {
             }),
             _ => Err(problems),
         }
+    }
+
+    /// Channels that are as they should be, with their numbers.
+    fn resolve_channels(
+        &self,
+        problems: &mut Vec<Problem>,
+        system_hz: u64,
+    ) -> Vec<(usize, ChannelConfig)> {
+        let mut channels = Vec::new();
+        for (index, channel) in self.channels.iter().flatten().enumerate() {
+            let own = channel.as_ref().and_then(|c| c.trigger);
+            if let Some(own) = own {
+                let mut check = Check {
+                    section: Section::Channel(index),
+                    problems,
+                };
+                check.within("divider", own.divider, &limits("divider", None));
+            }
+            match channel
+                .as_ref()
+                .map(|c| ChannelConfig::resolve(c, system_hz, self.line.double_edge, index))
+            {
+                Some(Ok(channel)) => {
+                    let parts = [
+                        (
+                            self.service.requests,
+                            ("requests", "additional data take", REQUESTS_PERIOD_MIN),
+                        ),
+                        (
+                            self.service.continuous,
+                            (
+                                "continuous",
+                                "continuous clock takes",
+                                CONTINUOUS_PERIOD_MIN,
+                            ),
+                        ),
+                    ];
+                    let is_endat = channel.is_endat();
+                    for (is_wanted, part) in parts {
+                        if is_endat && is_wanted && channel.period_cycles < part.2 {
+                            problems.push(too_fast_for(index, &channel, system_hz, part));
+                        }
+                    }
+                    channels.push((index, channel));
+                }
+                Some(Err(more)) => problems.extend(more),
+                None => {}
+            }
+        }
+        channels
     }
 
     fn check_sampling(

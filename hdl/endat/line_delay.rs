@@ -153,13 +153,22 @@ impl LineDelay {
     }
 }
 
+#[kernel]
 impl Logic for LineDelay {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, half);
         self.half.reset.next = self.reset.val();
+        self.time_delay();
+        self.place_cells();
+        self.run_halves();
+        self.measure_edge();
+        self.follow();
+        self.end_burst();
+        self.tell();
+    }
 
-        // tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
+    /// tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
+    fn time_delay(&mut self) {
         self.first_rise.next = self.rise.val() & (self.acquire.val() | !self.timing_armed.q.val());
         self.since_rise.d.next = self.since_rise.q.val() + 1;
         if self.first_rise.val() {
@@ -200,7 +209,10 @@ impl Logic for LineDelay {
         self.is_upset.next = self.wrong.q.val();
         self.delay_over.d.next =
             self.timing_armed.q.val() & (self.since_rise.q.val() == self.delay_now.val());
+    }
 
+    /// Samples and middles of cells, from the first one on.
+    fn place_cells(&mut self) {
         // The middle of a bit of an odd number of places lies on a place, that of others between two.
         self.is_later.next = false;
         for i in 0..self._trackers {
@@ -238,7 +250,10 @@ impl Logic for LineDelay {
             & !self.snap.val()
             & !(self.has_double.val() & self.afresh.q.val());
         self.center_now.next = self.acquired.val() | self.center_strobe.q.val() | self.snap.val();
+    }
 
+    /// Half a cell after the other.
+    fn run_halves(&mut self) {
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.second_half.q.val();
         self.half.restart.next =
@@ -268,7 +283,10 @@ impl Logic for LineDelay {
             self.sample_strobe.d.next = false;
             self.center_strobe.d.next = false;
         }
+    }
 
+    /// The pulse of a cell, and how far its data edge is from the middle.
+    fn measure_edge(&mut self) {
         // Of the edges before an acquired start bit that which launched it is the only one that counts.
         self.cells.pulse.next = self.acquired.val()
             | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
@@ -315,6 +333,10 @@ impl Logic for LineDelay {
                 self.edge_outside.d.next = true;
             }
         }
+    }
+
+    /// The tracked delay goes where the start edge was.
+    fn follow(&mut self) {
         self.follow_now.d.next = self.follow.val() & self.edge_error.q.val().any();
         self.half.shorten.next = self.shorten.q.val();
         self.half.lengthen.next = self.lengthen.q.val();
@@ -384,8 +406,10 @@ impl Logic for LineDelay {
             self.tracker[i].is_fixed.next = self.mode.val() == self.fixed_mode.val();
             self.tracker[i].fixed_delay.next = self.fixed_delay.val();
         }
+    }
 
-        // All cells of a burst have ended: the next rising edge begins a new one.
+    /// All cells of a burst have ended: the next rising edge begins a new one.
+    fn end_burst(&mut self) {
         self.over.next =
             !self.control.run.val() | (self.control.drain.val() & self.none_under_way.val());
         self.afresh.d.next = self.over.val();
@@ -406,6 +430,10 @@ impl Logic for LineDelay {
             self.edge_error.d.next = 0.into();
             self.edge_outside.d.next = false;
         }
+    }
+
+    /// Places of the cells, and what was measured.
+    fn tell(&mut self) {
         self.cells.sample.next = self.sample_now.val();
         self.center.next = self.center_now.val();
         self.cells.edge_in_window.next =

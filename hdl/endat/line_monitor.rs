@@ -156,10 +156,18 @@ impl LineMonitor {
     }
 }
 
+#[kernel]
 impl Logic for LineMonitor {
-    #[kernel]
     fn update(&mut self) {
-        // Settings: written in halves, taken over between two frames.
+        self.take_settings();
+        self.watch_edges();
+        self.raise_alarms();
+        self.count_edges();
+        self.answer_host();
+    }
+
+    /// Settings: written in halves, taken over between two frames.
+    fn take_settings(&mut self) {
         self.at.next = self.host_address.val();
         self.clear.d.next = false;
         if self.host_write.val() & !self.host_half.val() {
@@ -192,7 +200,10 @@ impl Logic for LineMonitor {
         self.phase_mode.next = self.mode.q.val();
         self.majority.next = self.uses_majority.q.val();
         self.fixed_delay.next = self.delay.q.val();
+    }
 
+    /// Earliest and latest edge, of a frame and of all.
+    fn watch_edges(&mut self) {
         // Offsets with their sign turned round: earlier is smaller.
         self.biased.next = self.edge_offset.val() ^ 0x80;
         if self.edge_measured.val() & self.has_margin.val() {
@@ -229,7 +240,10 @@ impl Logic for LineMonitor {
         if self.glitch.val() & self.has_margin.val() {
             self.glitches.d.next = self.glitches.q.val() + 1;
         }
+    }
 
+    /// Alarms: the tracked delay has drifted, or an edge was too far from its place.
+    fn raise_alarms(&mut self) {
         // Alarms.
         self.was_calibrated.d.next = self.calibrated.val();
         if self.calibrated.val() & !self.was_calibrated.q.val() {
@@ -256,8 +270,10 @@ impl Logic for LineMonitor {
             self.offset_alarm.d.next = true;
         }
         self.alarm.next = self.drift_alarm.q.val() | self.offset_alarm.q.val();
+    }
 
-        // Histogram: an edge that comes while the one before is counted is not.
+    /// Histogram: an edge that comes while the one before is counted is not.
+    fn count_edges(&mut self) {
         self.scaled.next = self.size.val() >> self.bin_shift.q.val();
         self.next_bin.next = self.scaled.val().get_bits::<5>(0) | 0x10;
         if self.scaled.val().get_bits::<4>(4).any() {
@@ -296,8 +312,10 @@ impl Logic for LineMonitor {
             self.bin.d.next = 0.into();
             self.step.d.next = 0.into();
         }
+    }
 
-        // Reading: the RAM is asked when it is not counting.
+    /// Reading: the RAM is asked when it is not counting.
+    fn answer_host(&mut self) {
         self.shown.next = 0.into();
         match self.at.val().index() {
             offset!(line.alignment) => {

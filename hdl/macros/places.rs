@@ -14,7 +14,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use syn::parse::{Parse, ParseStream};
 use syn::visit_mut::{visit_expr_mut, VisitMut};
-use syn::{Block, Expr, Ident, Macro, Pat, Token};
+use syn::{Expr, Ident, Item, Macro, Pat, Token};
 
 /// `block.register`.
 struct Word(&'static Register);
@@ -151,9 +151,9 @@ impl VisitMut for Places {
 }
 
 /// Puts the numbers in for the names.
-pub fn resolve(block: &mut Block) -> syn::Result<()> {
+pub fn resolve(kernel: &mut Item) -> syn::Result<()> {
     let mut places = Places::default();
-    places.visit_block_mut(block);
+    places.visit_item_mut(kernel);
     places.wrong.map_or(Ok(()), Err)
 }
 
@@ -161,11 +161,12 @@ pub fn resolve(block: &mut Block) -> syn::Result<()> {
 mod tests {
     use super::*;
     use quote::ToTokens;
-    use syn::parse_quote;
+    use syn::{parse_quote, Block};
 
-    fn resolved(mut block: Block) -> Result<String, String> {
-        resolve(&mut block).map_err(|e| e.to_string())?;
-        Ok(block.to_token_stream().to_string())
+    fn resolved(block: Block) -> Result<String, String> {
+        let mut kernel = parse_quote!(fn update(&mut self) #block);
+        resolve(&mut kernel).map_err(|e| e.to_string())?;
+        Ok(kernel.to_token_stream().to_string())
     }
 
     fn same(named: Block, numbered: Block) {

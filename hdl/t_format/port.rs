@@ -139,8 +139,8 @@ impl Default for TFormatPort {
     }
 }
 
+#[kernel]
 impl Logic for TFormatPort {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, filter, exchange, reply, snapshot);
         self.filter.reset.next = self.reset.val();
@@ -148,8 +148,16 @@ impl Logic for TFormatPort {
         self.reply.reset.next = self.reset.val();
         self.snapshot.reset.next = self.reset.val();
         self.started.reset.next = self.reset.val() | !self.exchange.busy.val();
+        self.choose_turn();
+        self.take_request();
+        self.run_exchange();
+        self.judge();
+        self.show_result();
+        self.answer_host();
+    }
 
-        // Whose turn it is: a trigger's, or else the host's. Between two exchanges the encoder gets a rest.
+    /// Whose turn it is: a trigger's, or else the host's. Between two exchanges the encoder gets a rest.
+    fn choose_turn(&mut self) {
         self.is_busy.next = self.exchange.busy.val() | self.rest.q.val().any();
         self.own_start.next = self.pending.q.val() & !self.is_busy.val() & !self.trigger.val();
         self.begins.next = !self.is_busy.val() & (self.trigger.val() | self.pending.q.val());
@@ -173,8 +181,10 @@ impl Logic for TFormatPort {
         if self.exchange.publish.val() {
             self.rest.d.next = 2.into();
         }
+    }
 
-        // The host's request: not taken while there is one.
+    /// The host's request: not taken while there is one.
+    fn take_request(&mut self) {
         self.send_sum_now.next = self.send_id.q.val().xor()
             ^ self.send_address.q.val().xor()
             ^ self.send_data.q.val().xor();
@@ -206,7 +216,10 @@ impl Logic for TFormatPort {
         if self.own_start.val() {
             self.pending.d.next = false;
         }
+    }
 
+    /// The exchange, and the fields of its reply.
+    fn run_exchange(&mut self) {
         connect!(self.filter <= self; pin = data_i, filter_cycles);
         self.filter.filter_half.next = false;
         self.filter.majority.next = false;
@@ -239,7 +252,10 @@ impl Logic for TFormatPort {
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
         FieldBitsOut::join(&mut self.exchange.field, &mut self.reply.field);
+    }
 
+    /// What the reply is worth.
+    fn judge(&mut self) {
         // A trigger that was not taken is told by the result of the exchange under way, or of the next one.
         self.overrun.next = self.lost.q.val() & !self.is_own.val();
         if self.exchange.publish.val() & !self.is_own.val() {
@@ -276,7 +292,10 @@ impl Logic for TFormatPort {
             self.sum_flags.val() | (bit_cast::<16, 1>(self.overrun.val().into()) << 15);
         self.primary.flags.next = self.flags_in.val();
         self.code.next = self.primary.cause.val();
+    }
 
+    /// The last good position. A part that does not come stays as it was, if that was good.
+    fn show_result(&mut self) {
         // A part that does not come stays as it was, if that was good.
         self.single.next = 0.into();
         if self.has_had_single.q.val() {
@@ -318,8 +337,10 @@ impl Logic for TFormatPort {
         self.over.next = self.exchange.publish.val();
         self.over_request.next = self.is_own.val();
         FrameResultOut::link(&mut self.result, &mut self.snapshot.result);
+    }
 
-        // What the words of the host show. What the snapshot has withdrawn is there no more.
+    /// What the words of the host show. What the snapshot has withdrawn is there no more.
+    fn answer_host(&mut self) {
         if !self.snapshot.result.position_valid.val() {
             self.has_had_single.d.next = false;
             self.has_had_multi.d.next = false;

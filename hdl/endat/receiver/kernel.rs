@@ -1,0 +1,466 @@
+//! Kernel of the receiver.
+
+use super::*;
+use rtl_design::kernel;
+
+#[kernel]
+impl Logic for Receiver {
+    fn update(&mut self) {
+        clock!(self, clock, serial, check);
+        self.check.reset.next = self.reset.val();
+        self.serial.reset.next = self.reset.val();
+        self.choose_width();
+        self.begin_cycle();
+        self.count_cells();
+        self.go_on();
+        self.shift();
+        self.align();
+        self.check_crc();
+        self.end_answer();
+        self.begin_block();
+        self.begin_frame();
+        self.tell_progress();
+        self.tell();
+    }
+
+    /// Width of this part of the answer, and the cells behind its CRC.
+    fn choose_width(&mut self) {
+        // Cells behind this CRC: the edge that ends the frame, 30 for each block of additional data.
+        self.cells_after.next = 1.into();
+        self.width.next = self.payload_bits.val();
+        if self.has_all.val() {
+            if self.infos_left.q.val() == 1 {
+                self.cells_after.next = 31.into();
+            }
+            if self.infos_left.q.val() == 2 {
+                self.cells_after.next = 61.into();
+            }
+            // Parked before that edge.
+            if self.shape.has_supplement.val() {
+                self.cells_after.next = 0.into();
+                if self.infos_left.q.val() == 1 {
+                    self.cells_after.next = 30.into();
+                }
+                if self.infos_left.q.val() == 2 {
+                    self.cells_after.next = 60.into();
+                }
+            }
+            if self.in_info.q.val() {
+                self.width.next = self.info_bits.val();
+            }
+        }
+    }
+
+    /// What a cycle begins with.
+    fn begin_cycle(&mut self) {
+        self.skip_step.next = self.cells.sample.val();
+        if self.control.acquire.val() {
+            self.skip_step.next = self.rise.val();
+        }
+        self.start_sample.next =
+            (self.field.q.val() == Field::Start) & self.cells.sample.val() & self.level.val();
+        self.covered_bit.next = false;
+        self.crc_bit.next = false;
+        self.last_payload.d.next = false;
+        self.take_crc.d.next = self.last_payload.q.val();
+        self.last_taken.d.next = false;
+        self.separator.next = false;
+        self.missing.d.next = false;
+        self.supplement_over.d.next = false;
+        self.low_gap.d.next = false;
+        self.high_gap.d.next = false;
+        self.good_gap.d.next = false;
+        self.again.next = false;
+    }
+
+    /// Cells and pulses.
+    fn count_cells(&mut self) {
+        // Where a bit has few system clock cycles cells go on until the end has been seen.
+        self.counts.next = self.cells.sample.val()
+            & ((self.field.q.val() != Field::Done) | self.left.q.val().get_bits::<6>(1).any());
+        if self.counts.val()
+            & (self.field.q.val() != Field::Skip)
+            & (self.field.q.val() != Field::Start)
+        {
+            self.left.d.next = self.left.q.val() - 1;
+        }
+        // Each cell has its pulse. How many cells there are before the start bit is not known: each of them is one pulse more.
+        self.one_more.next = self.cells.sample.val() & (self.field.q.val() == Field::Start);
+        self.one_less.next = self.cells.pulse.val()
+            | (self.control.acquire.val() & self.rise.val() & (self.field.q.val() == Field::Skip));
+        if self.one_more.val() & !self.one_less.val() {
+            self.to_send.d.next = self.to_send.q.val() + 1;
+        }
+        if self.one_less.val() & !self.one_more.val() {
+            self.to_send.d.next = self.to_send.q.val() - 1;
+        }
+        // A third count, modulo 8, of the pulses that are on the cable.
+        if self.cells.pulse.val() & !self.counts.val() {
+            self.under_way.d.next = self.under_way.q.val() + 1;
+        }
+        if self.counts.val() & !self.cells.pulse.val() {
+            self.under_way.d.next = self.under_way.q.val() - 1;
+        }
+    }
+
+    /// The parts of an answer, one after the other.
+    fn go_on(&mut self) {
+        match self.field.q.val() {
+            Field::Skip => {
+                if self.skip_step.val() {
+                    self.left.d.next = self.left.q.val() - 1;
+                    if self.covered.q.val() == 14 {
+                        self.skip_rounds.d.next = self.skip_rounds.q.val() - 1;
+                        if !self.skip_rounds.q.val().any() | !self.has_all.val() {
+                            self.field.d.next = Field::Start;
+                        }
+                    }
+                }
+            }
+            Field::Start => {
+                if self.start_sample.val() & self.cells.edge_in_window.val() {
+                    self.field.d.next = Field::F1;
+                    if !self.shape.has_f1.val() & self.has_all.val() {
+                        self.field.d.next = Field::Payload;
+                    }
+                }
+            }
+            Field::F1 => {
+                if self.cells.sample.val() {
+                    self.covered_bit.next = true;
+                    self.f1_bit.d.next = self.level.val();
+                    self.field.d.next = Field::Payload;
+                    if self.shape.has_f2.val() {
+                        self.field.d.next = Field::F2;
+                    }
+                }
+            }
+            Field::F2 => {
+                if self.cells.sample.val() {
+                    self.covered_bit.next = true;
+                    self.f2_bit.d.next = self.level.val();
+                    self.field.d.next = Field::Payload;
+                }
+            }
+            Field::Payload => {
+                if self.cells.sample.val() {
+                    self.covered_bit.next = true;
+                    // This bit, five of the CRC, and what comes behind.
+                    if self.left.q.val() == (self.cells_after.val() + 6) {
+                        self.last_payload.d.next = true;
+                        self.field.d.next = Field::Crc;
+                    }
+                }
+            }
+            Field::Crc => {
+                if self.cells.sample.val() {
+                    self.crc_bit.next = true;
+                    if self.left.q.val() == (self.cells_after.val() + 1) {
+                        self.last_taken.d.next = true;
+                        self.field.d.next = Field::Done;
+                        if self.infos_left.q.val().any() & self.has_all.val() {
+                            self.field.d.next = Field::Separator;
+                        }
+                        if self.control.going_on.val() & self.has_continuous.val() {
+                            self.field.d.next = Field::GapHigh;
+                        }
+                    }
+                }
+            }
+            Field::Separator => {
+                if self.look.val() & self.level.val() & self.has_all.val() {
+                    self.missing.d.next = true;
+                    self.field.d.next = Field::Done;
+                }
+                if self.cells.sample.val() {
+                    self.separator.next = true;
+                    self.infos_left.d.next = self.infos_left.q.val() - 1;
+                    self.field.d.next = Field::Payload;
+                    if self.level.val() | !self.has_all.val() {
+                        self.missing.d.next = true;
+                        self.field.d.next = Field::Done;
+                    }
+                }
+            }
+            Field::GapHigh => {
+                if self.cells.sample.val() {
+                    self.low_gap.d.next = !self.level.val();
+                    self.good_gap.d.next = self.level.val();
+                    self.field.d.next = Field::GapLow;
+                }
+                if !self.has_continuous.val() {
+                    self.field.d.next = Field::Done;
+                }
+            }
+            Field::GapLow => {
+                if self.cells.sample.val() {
+                    self.high_gap.d.next = self.level.val();
+                    self.again.next = true;
+                    self.field.d.next = Field::Start;
+                }
+                if !self.has_continuous.val() {
+                    self.field.d.next = Field::Done;
+                }
+            }
+            Field::Done => {}
+            Field::Supplement => {
+                if self.cells.sample.val() & (self.left.q.val() == 2) {
+                    self.supplement_over.d.next = true;
+                    self.field.d.next = Field::Done;
+                }
+                if !self.has_all.val() {
+                    self.field.d.next = Field::Done;
+                }
+            }
+            _ => {
+                self.field.d.next = Field::Done;
+            }
+        }
+    }
+
+    /// Where a bit enters: the smallest of 5, 20, 35 and 50 bits that holds F1, F2 and the position.
+    fn shift(&mut self) {
+        self.in5.next = self.width.val() <= 3;
+        self.in20.next = (self.width.val() <= 18) & !self.in5.val();
+        self.in35.next = (self.width.val() <= 33) & !self.in5.val() & !self.in20.val();
+        self.in50.next = !self.in5.val() & !self.in20.val() & !self.in35.val();
+        self.bit_in.next = self.bit_now.q.val() & !self.align.q.val();
+        // One cycle later than the sample: the whole word hangs on this enable.
+        self.shift_now.d.next = self.covered_bit.val();
+        self.bit_now.d.next = self.level.val();
+        self.shift.next = self.shift_now.q.val() | self.align.q.val();
+        self.shifted.next = self.word.q.val() >> 1;
+        if self.in50.val() {
+            self.shifted.next = (self.word.q.val() >> 1).replace_bit(49, self.bit_in.val());
+        }
+        if self.in35.val() {
+            self.shifted.next = (self.word.q.val() >> 1).replace_bit(34, self.bit_in.val());
+        }
+        if self.in20.val() {
+            self.shifted.next = (self.word.q.val() >> 1).replace_bit(19, self.bit_in.val());
+        }
+        if self.in5.val() {
+            self.shifted.next = (self.word.q.val() >> 1).replace_bit(4, self.bit_in.val());
+        }
+        self.covered_next.next = self.covered.q.val() + 1;
+        if self.covered.q.val() == 14 {
+            self.covered_next.next = 0.into();
+        }
+        if self.shift.val() {
+            self.word.d.next = self.shifted.val();
+        }
+        if self.shift.val() | ((self.field.q.val() == Field::Skip) & self.skip_step.val()) {
+            self.covered.d.next = self.covered_next.val();
+        }
+    }
+
+    /// The word is aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
+    fn align(&mut self) {
+        // Aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
+        self.align_first.d.next = self.take_crc.q.val();
+        self.aligned_at.next = 5.into();
+        if self.shape.has_f2.val() {
+            self.aligned_at.next = 6.into();
+        }
+        if self.has_all.val() & (!self.shape.has_f1.val() | self.in_info.q.val()) {
+            self.aligned_at.next = 4.into();
+        }
+        if self.last_payload.q.val() {
+            self.crc_calc.d.next = self.serial.crc.val();
+        }
+        if self.take_crc.q.val() {
+            self.align.d.next = true;
+        }
+        if self.align.q.val()
+            & !self.align_first.q.val()
+            & (self.covered.q.val() == self.aligned_at.val())
+        {
+            self.align.d.next = false;
+        }
+    }
+
+    /// Both checks of the CRC.
+    fn check_crc(&mut self) {
+        if self.crc_bit.val() {
+            self.crc_bits.d.next = (self.crc_bits.q.val() << 1).replace_bit(0, self.level.val());
+        }
+        self.check.clear.next = self.control.start.val()
+            | (self.new_block.q.val() & self.has_all.val())
+            | (self.again.val() & self.has_continuous.val());
+        self.check.word_bit.next = self.cells.sample.val() & (self.field.q.val() == Field::Payload);
+        connect!(self.check <= self; crc_bit, bit = level);
+        self.check.has_f2.next = self.shape.has_f2.val();
+        self.check.word.next = self.word.q.val().get_bits::<48>(0);
+        self.check.has_f1.next =
+            !self.has_all.val() | (self.shape.has_f1.val() & !self.in_info.q.val());
+        self.check.f1.next = self.f1_bit.q.val();
+        self.check.f2.next = self.f2_bit.q.val();
+        self.serial.clear.next = self.control.start.val()
+            | (self.separator.val() & self.has_all.val())
+            | (self.again.val() & self.has_continuous.val());
+        self.serial.enable.next = self.covered_bit.val() | self.crc_bit.val();
+        self.serial.bit.next = self.level.val();
+    }
+
+    /// The end of an answer or a block.
+    fn end_answer(&mut self) {
+        // With two or three system clock cycles in a bit the word is not aligned yet.
+        self.not_aligned.next = self.align.q.val() & self.has_double.val();
+        self.is_taken.next = self.last_taken.q.val() | self.waiting.q.val();
+        self.waiting.d.next = self.is_taken.val() & self.not_aligned.val();
+        self.done_now.d.next = self.is_taken.val() & !self.not_aligned.val();
+        self.parallel_equal.d.next = self.check.is_ok.val();
+        self.serial_good.d.next = self.serial.residue_ok.val();
+    }
+
+    /// A new block: no bits yet. The position stays until it is published; the block's first bit comes a cycle after that.
+    fn begin_block(&mut self) {
+        self.low_separator.d.next = self.separator.val() & !self.level.val() & self.has_all.val();
+        self.separator_then.d.next = self.low_separator.q.val();
+        self.new_block.d.next = self.separator_then.q.val();
+        if self.has_all.val() & self.new_block.q.val() {
+            self.word.d.next = 0.into();
+            self.covered.d.next = 0.into();
+            self.align.d.next = false;
+            self.in_info.d.next = true;
+        }
+    }
+
+    /// A frame, the next answer of a running clock, a supplement: what each begins with.
+    fn begin_frame(&mut self) {
+        // Cells of the frame besides payload and additional data.
+        self.cells_around.next = self.fixed_cells.val();
+        if self.shape.has_f2.val() {
+            self.cells_around.next = self.fixed_cells.val() + 1;
+        }
+        if self.has_all.val() {
+            if self.shape.has_supplement.val() {
+                self.cells_around.next = self.fixed_cells.val();
+            }
+            if self.infos.val() == 1 {
+                self.cells_around.next = self.fixed_cells.val() + 31;
+                if self.shape.has_supplement.val() {
+                    self.cells_around.next = self.fixed_cells.val() + 30;
+                }
+            }
+            if self.infos.val() == 2 {
+                self.cells_around.next = self.fixed_cells.val() + 61;
+                if self.shape.has_supplement.val() {
+                    self.cells_around.next = self.fixed_cells.val() + 60;
+                }
+            }
+            if self.shape.has_parameter.val() {
+                self.cells_around.next = self.fixed_cells.val() + 23;
+            }
+        }
+        if self.control.start.val() {
+            self.field.d.next = Field::Skip;
+            self.left.d.next = bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_around.val();
+            self.to_send.d.next =
+                bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_around.val();
+            self.word.d.next = 0.into();
+            self.under_way.d.next = 0.into();
+            // Skipped cells take the counter to 0, where the covered bits start from.
+            self.covered.d.next = self.skip_from.val();
+            self.skip_rounds.d.next = 0.into();
+            self.f2_bit.d.next = true;
+            self.align.d.next = false;
+            self.in_info.d.next = false;
+            self.infos_left.d.next = self.infos.val();
+            if self.has_all.val() {
+                self.f1_bit.d.next = false;
+                if self.shape.has_parameter.val() {
+                    self.covered.d.next = self.long_skip_from.val();
+                    self.skip_rounds.d.next = 2.into();
+                }
+            }
+        }
+        // The next answer, without a command before it; an upset of `in_info` does not last as long as the run.
+        if self.again.val() & self.has_continuous.val() {
+            self.left.d.next =
+                bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_from_start.val();
+            self.word.d.next = 0.into();
+            self.covered.d.next = 0.into();
+            self.in_info.d.next = false;
+        }
+        // The first bits from the first HIGH on, until it has gone through all places.
+        if self.cells.sample.val()
+            & (self.field.q.val() != Field::Skip)
+            & !self.heard.q.val().get_bit(6)
+        {
+            self.heard.d.next = (self.heard.q.val() << 1).replace_bit(0, self.level.val());
+        }
+        // The line is LOW again behind an echo; an open line stays HIGH.
+        if self.heard.q.val() == (bit_cast::<7, 6>(self.command.val()) << 1) {
+            self.echo.d.next = true;
+        }
+        if self.control.start.val() | self.again.val() {
+            self.heard.d.next = 0.into();
+            self.echo.d.next = false;
+        }
+        if self.control.aborts.val() {
+            self.field.d.next = Field::Done;
+        }
+        if self.control.start_supplement.val() & self.has_all.val() {
+            self.field.d.next = Field::Supplement;
+            self.left.d.next = self.supplement_cells.val();
+            self.to_send.d.next = self.supplement_cells.val();
+            self.under_way.d.next = 0.into();
+        }
+    }
+
+    /// How far the answer is.
+    fn tell_progress(&mut self) {
+        self.progress.skipping.next =
+            (self.field.q.val() == Field::Skip) | (self.field.q.val() == Field::Supplement);
+        self.hunting_now.d.next = self.field.q.val() == Field::Start;
+        self.progress.hunting.next = self.hunting_now.q.val();
+        self.progress.start_found.next = self.start_sample.val() & self.cells.edge_in_window.val();
+        self.refused.d.next = self.start_sample.val() & !self.cells.edge_in_window.val();
+        self.progress.start_refused.next = self.refused.q.val();
+        self.started_now.d.next =
+            (self.field.q.val() != Field::Skip) & (self.field.q.val() != Field::Start);
+        self.progress.started.next = self.started_now.q.val();
+        self.progress.all_sent.next = !self.to_send.q.val().any();
+        self.progress.one_to_send.next = self.to_send.q.val() == 1;
+        self.progress.none_under_way.next = self.to_send.q.val() == self.left.q.val();
+        // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
+        self.used.d.next =
+            self.progress.all_sent.val() & (self.left.q.val() == 1) & (self.under_way.q.val() == 1);
+        self.progress.all_used.next = self.used.q.val();
+        self.ended.d.next = self.progress.all_sent.val()
+            & self.progress.none_under_way.val()
+            & !self.under_way.q.val().any();
+        self.progress.all_ended.next = self.ended.q.val();
+        self.progress.done.next = self.done_now.q.val();
+        self.progress.info_done.next = false;
+        self.progress.separated.next = false;
+        self.progress.info_missing.next = false;
+        self.progress.last_bit.next = self.last_taken.q.val();
+        self.progress.finished.next = self.done_now.q.val();
+        if self.has_all.val() {
+            self.progress.done.next = self.done_now.q.val() & !self.in_info.q.val();
+            self.progress.info_done.next = self.done_now.q.val() & self.in_info.q.val();
+            self.progress.separated.next = self.low_separator.q.val();
+            self.progress.info_missing.next = self.missing.q.val();
+            self.progress.finished.next = (self.done_now.q.val() & !self.infos_left.q.val().any())
+                | self.supplement_over.q.val();
+        }
+        self.progress.gap_good.next = self.good_gap.q.val() & self.has_continuous.val();
+        self.progress.gap_low.next = self.low_gap.q.val() & self.has_continuous.val();
+        self.progress.gap_high.next = self.high_gap.q.val() & self.has_continuous.val();
+        self.progress.latched.next = self.again.val() & self.has_continuous.val();
+    }
+
+    /// What it has brought.
+    fn tell(&mut self) {
+        self.verdict.is_echo.next = self.echo.q.val() & self.has_diagnosis.val();
+        self.payload.next = self.word.q.val().get_bits::<48>(0);
+        self.verdict.f1.next = self.f1_bit.q.val();
+        self.verdict.f2.next = self.f2_bit.q.val();
+        self.crc_received.next = self.crc_bits.q.val();
+        self.crc_computed.next = self.crc_calc.q.val();
+        self.verdict.serial_ok.next = self.serial_good.q.val();
+        self.verdict.parallel_ok.next = self.parallel_equal.q.val();
+    }
+}

@@ -1,0 +1,632 @@
+//! Kernel of the transaction.
+
+use super::*;
+use rtl_design::kernel;
+
+#[kernel]
+impl Logic for Transaction {
+    fn update(&mut self) {
+        clock!(self, clock, health, verdict);
+        self.phase.reset.next = false;
+        self.extra.d.next = self.limits.first_low_extra_cycles.val().any();
+        self.health.reset.next = self.reset.val();
+        self.verdict.reset.next = self.reset.val();
+        self.ask();
+        self.explain_line();
+        self.go_on();
+        self.end_frame();
+        self.run_timer();
+        self.find_last_edge();
+        self.judge();
+        self.know_delay();
+        self.owe();
+        self.begin_frame();
+        self.run_on();
+        self.measure_again();
+        self.hold_clock();
+        self.tell();
+        self.watch_health();
+    }
+
+    /// What is wanted, and what a cycle begins with.
+    fn ask(&mut self) {
+        self.own.next = self.next_frame.is_own.val() & self.has_all.val();
+        self.triggered.next =
+            self.next_frame.trigger.val() & !(self.next_frame.hold_off.val() & self.has_all.val());
+        // The position that a measuring frame has made possible.
+        self.owed.next = self.once_more.q.val()
+            & self.owing.q.val()
+            & !(self.next_frame.hold_off.val() & self.has_all.val());
+        self.wanted.next = self.triggered.val()
+            | self.owed.val()
+            | (self.next_frame.begin_own.val() & self.has_all.val());
+        self.proof.next = false;
+        self.plugged.next = false;
+        self.refuse.next = false;
+        self.normal_end.next = false;
+        self.supplement_now.d.next = false;
+        self.limit.next = bit_cast::<16, 12>(self.limits.start_timeout_us.val());
+        if self.has_all.val() & self.shape.has_parameter.val() {
+            self.limit.next = self.parameter_timeout_us.val();
+        }
+        self.in_us.next = false;
+        self.timer_clear.next = false;
+        self.accept.next = false;
+        self.give_up.next = false;
+        self.idle.next = false;
+        self.answer_taken.next = false;
+        self.announce.next = false;
+        self.probed.next = false;
+        self.endless.next = (self.timer.q.val() & self.frame_us.val()).any();
+        self.watched.next = false;
+        self.found_late.next = false;
+        self.found.next = 0.into();
+    }
+
+    /// What is known of a line that is HIGH at rest, and of one without a start bit.
+    fn explain_line(&mut self) {
+        self.not_low.next = self.data_not_low.val();
+        self.no_start.next = self.no_start_bit.val();
+        if self.has_diagnosis.val() & self.health.is_open.val() {
+            self.not_low.next = self.data_not_low.val() | self.no_encoder.val();
+        }
+        if self.has_diagnosis.val() & self.health.is_stuck.val() {
+            self.not_low.next = self.data_not_low.val() | self.stuck_high.val();
+        }
+        if self.has_diagnosis.val() & self.health.never_high.val() {
+            self.no_start.next = self.no_start_bit.val() | self.stuck_low.val();
+        }
+    }
+
+    /// The order of a frame.
+    fn go_on(&mut self) {
+        self.running.next = false;
+        // A frame that has vanished: a register was upset.
+        self.vanished.next =
+            (self.owing.q.val() & !self.once_more.q.val()) | self.under_way.q.val();
+
+        match self.phase.q.val() {
+            Phase::NotReady => self.await_low(),
+            Phase::Ready => self.await_trigger(),
+            Phase::FirstLow => self.hold_first_low(),
+            Phase::Frame => self.run_frame(),
+            Phase::Park => self.park(),
+            Phase::Tail => self.end_clock(),
+            Phase::Recovery => self.await_fall(),
+            Phase::Abort => self.stay_quiet(),
+            _ => {
+                self.give_up.next = true;
+            }
+        }
+    }
+
+    /// DATA is not LOW yet, or not for long enough.
+    fn await_low(&mut self) {
+        self.limit.next = self.ready_low_cycles.val();
+        self.timer_clear.next = self.level.val();
+        self.idle.next = self.level.val() & !(self.next_frame.hold_off.val() & self.has_all.val());
+        if self.timer_hit.q.val() {
+            self.phase.d.next = Phase::Ready;
+        }
+        if self.level.val() {
+            self.phase.d.next = Phase::NotReady;
+            // Longer than an edge rings.
+            self.plugged.next = self.high_at_tick.q.val() & self.tick_us.val();
+            if self.triggered.val() | self.owed.val() {
+                self.found.next = self.not_low.val();
+                self.give_up.next = true;
+            }
+        }
+        if self.vanished.val() {
+            self.found.next = self.upset.val();
+            self.give_up.next = true;
+        }
+    }
+
+    /// A frame may begin.
+    fn await_trigger(&mut self) {
+        self.timer_clear.next = true;
+        // A trigger just behind one that was refused is lost: the result that is being told would be taken for its own.
+        self.idle.next =
+            !(self.next_frame.hold_off.val() & self.has_all.val()) & !self.verdict.is_telling.val();
+        if self.level.val() {
+            self.phase.d.next = Phase::NotReady;
+            self.plugged.next = true;
+            if (self.triggered.val() | self.owed.val()) & !self.verdict.is_telling.val() {
+                self.found.next = self.not_low.val();
+                self.give_up.next = true;
+            }
+        } else {
+            if self.wanted.val() & !self.verdict.is_telling.val() {
+                if self.next_frame.is_known.val() {
+                    self.accept.next = true;
+                    self.phase.d.next = Phase::Frame;
+                    if self.extra.q.val() {
+                        self.phase.d.next = Phase::FirstLow;
+                    }
+                } else {
+                    self.found.next = self.unknown_command.val();
+                    self.refuse.next = true;
+                }
+            }
+            // The line is wanted for long; the trigger has a result all the same: nothing wrong, no position.
+            if self.once_more.q.val()
+                & self.next_frame.hold_off.val()
+                & self.has_all.val()
+                & !self.own.val()
+            {
+                self.refuse.next = true;
+            }
+        }
+        if self.vanished.val() {
+            self.found.next = self.upset.val();
+            self.give_up.next = true;
+        }
+    }
+
+    /// The first low phase is longer than the others.
+    fn hold_first_low(&mut self) {
+        self.running.next = true;
+        self.watched.next = true;
+        self.limit.next = bit_cast::<16, 11>(self.limits.first_low_extra_cycles.val());
+        if self.timer_hit.q.val() {
+            self.phase.d.next = Phase::Frame;
+            self.timer_clear.next = true;
+        }
+    }
+
+    /// Command and answer.
+    fn run_frame(&mut self) {
+        self.running.next = true;
+        self.watched.next = true;
+        self.in_us.next = true;
+        self.timer_clear.next =
+            (self.progress.hunting.val() ^ self.was_hunting.q.val()) | self.progress.finished.val();
+        // A receiver that has lost its place.
+        if self.endless.val() & !self.progress.hunting.val() {
+            self.found.next = self.tail_low.val();
+            self.give_up.next = true;
+        }
+        // In the first cycle of the hunt the timer is still that of what was before.
+        if self.timer_hit.q.val() & self.progress.hunting.val() & self.was_hunting.q.val() {
+            self.found.next = self.no_start.val();
+            self.give_up.next = true;
+            // The result is told; the clock goes on as long again, to know a late encoder from a silent one.
+            if self.has_diagnosis.val() & !self.shape.has_parameter.val() & !self.late.q.val() {
+                self.give_up.next = false;
+                self.announce.next = true;
+                self.timer_clear.next = true;
+            }
+        }
+        if self.late.q.val() & (self.progress.started.val() | self.progress.start_refused.val()) {
+            self.found.next = self.no_start_bit.val() | self.late_start.val();
+            self.give_up.next = true;
+        }
+        if self.progress.start_refused.val() & !self.late.q.val() {
+            self.found.next = self.start_window.val();
+            self.give_up.next = true;
+        }
+        if self.progress.done.val() {
+            self.answer_taken.next = true;
+        }
+        if self.progress.separated.val() & self.has_all.val() {
+            self.proof.next = true;
+        }
+        if self.has_continuous.val() & self.progress.gap_good.val() {
+            self.proof.next = true;
+        }
+        if self.has_continuous.val() & self.progress.latched.val() {
+            self.normal_end.next = true;
+        }
+        if self.progress.info_missing.val() & self.has_all.val() {
+            self.found.next = self.info_not_there.val();
+            self.give_up.next = true;
+        }
+        if self.has_continuous.val() & self.progress.gap_low.val() {
+            self.found.next = self.tail_low.val();
+            self.give_up.next = true;
+        }
+        if self.has_continuous.val() & self.progress.gap_high.val() {
+            self.found.next = self.not_falling.val();
+            self.give_up.next = true;
+            self.found_late.next = true;
+        }
+        if self.progress.finished.val() & !self.going.val() {
+            self.phase.d.next = Phase::Tail;
+            if self.has_all.val() & self.shape.has_supplement.val() & !self.in_supplement.q.val() {
+                self.phase.d.next = Phase::Park;
+            }
+        }
+    }
+
+    /// CLOCK is LOW before the supplement.
+    fn park(&mut self) {
+        self.running.next = true;
+        self.watched.next = true;
+        // No bit follows the answer here.
+        self.proof.next = self.verdict.taken.val();
+        self.limit.next = self.park_cycles.val();
+        if self.timer_hit.q.val() {
+            self.phase.d.next = Phase::Frame;
+            self.timer_clear.next = true;
+            self.in_supplement.d.next = true;
+            self.supplement_now.d.next = true;
+            if !self.progress.all_ended.val() {
+                self.found.next = self.upset.val();
+                self.give_up.next = true;
+            }
+        }
+        if !self.has_all.val() {
+            self.give_up.next = true;
+        }
+    }
+
+    /// The last edges of the clock.
+    fn end_clock(&mut self) {
+        self.running.next = true;
+        self.watched.next = true;
+        self.in_us.next = true;
+        if self.endless.val() {
+            self.found.next = self.tail_low.val();
+            self.give_up.next = true;
+        }
+        // A cycle late, for the middle may come before the last bit has been worked upon.
+        if self.was_center.q.val() {
+            self.phase.d.next = Phase::Recovery;
+            // From here on the full clock's times again: a short tm ends before half a slow period does.
+            self.acquiring.d.next = false;
+            self.slow_now.d.next = false;
+        }
+    }
+
+    /// DATA falls when the recovery time is over.
+    fn await_fall(&mut self) {
+        self.running.next = !self.tail_sampled.q.val();
+        self.watched.next = true;
+        self.limit.next = bit_cast::<16, 13>(self.limits.recovery_limit_cycles.val());
+        // A request's command may have another range than the triggers' one.
+        if self.own.val() {
+            self.limit.next = self.own_recovery_limit_cycles.val();
+        }
+        if self.cells.sample.val() {
+            self.tail_sampled.d.next = true;
+            self.proof.next = !self.tail_sampled.q.val() & self.level.val();
+        }
+        if self.tail_sampled.q.val() & !self.level.val() {
+            self.recovery.d.next = self.timer.q.val().get_bits::<13>(0);
+            self.timer_clear.next = true;
+            self.phase.d.next = Phase::NotReady;
+            self.normal_end.next = true;
+        } else {
+            if self.timer_hit.q.val() {
+                self.found.next = self.not_falling.val();
+                self.give_up.next = true;
+            }
+        }
+        // Each cell had its pulse, but for one whose count was upset.
+        if self.cells.sample.val() & !self.tail_sampled.q.val() & !self.progress.all_used.val() {
+            self.found.next = self.upset.val();
+            self.give_up.next = true;
+        }
+        // The encoder still sends, or has stopped early: its frame has another length than ours.
+        if self.cells.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
+            self.found.next = self.tail_low.val();
+            self.give_up.next = true;
+        }
+    }
+
+    /// The line is left alone; then it is probed, where that is known.
+    fn stay_quiet(&mut self) {
+        self.in_us.next = true;
+        self.limit.next = self.abort_us.val();
+        if self.has_continuous.val() & self.leaving.q.val() {
+            self.limit.next = self.leave_us.val();
+        }
+        if self.has_diagnosis.val() & self.probing.q.val() {
+            self.limit.next = self.probe_us.val();
+        }
+        if self.has_diagnosis.val() & self.settling.q.val() {
+            self.limit.next = self.settle_us.val();
+        }
+        if self.timer_hit.q.val() {
+            self.phase.d.next = Phase::NotReady;
+            self.timer_clear.next = true;
+            self.leaving.d.next = false;
+            self.settling.d.next = false;
+            if self.has_diagnosis.val() & self.level.val() & !self.settling.q.val() {
+                self.phase.d.next = Phase::Abort;
+                self.probing.d.next = true;
+            }
+            if self.probing.q.val() {
+                self.phase.d.next = Phase::Abort;
+                self.probed.next = true;
+                self.probing.d.next = false;
+                self.settling.d.next = true;
+            }
+        }
+    }
+
+    /// What ends a frame, before its time or at it.
+    fn end_frame(&mut self) {
+        if self.has_diagnosis.val() & self.health.expired.val() & self.watched.val() {
+            self.found.next = self.found.val() | self.too_long.val();
+            self.give_up.next = true;
+        }
+        // What is given up has that as its one result.
+        if self.give_up.val() | self.verdict.gave_up.val() {
+            self.proof.next = false;
+            self.announce.next = false;
+        }
+        // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
+        self.leave.next = self.going.val()
+            & self.progress.gap_good.val()
+            & (!self.next_frame.continuous.val()
+                | self.next_frame.line_wanted.val()
+                | !self.known.val()
+                | (self.next_frame.stop_at_error.val() & self.verdict.is_bad.val()));
+        if self.leave.val() {
+            self.normal_end.next = true;
+        }
+        if self.proof.val() & self.verdict.is_pending.val() & !self.going.val() {
+            self.answered.d.next = true;
+        }
+        if self.announce.val() {
+            self.answered.d.next = true;
+            self.late.d.next = true;
+        }
+        if self.normal_end.val() {
+            self.answered.d.next = false;
+            self.under_way.d.next = self.going.val() & !self.leave.val();
+        }
+        // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
+        if self.verdict.gave_up.val() {
+            self.phase.d.next = Phase::Abort;
+            self.timer_clear.next = true;
+            self.accept.next = false;
+            self.refuse.next = false;
+            // A trigger just behind the one that was refused is lost, not forgotten.
+            self.idle.next = false;
+            // DATA LOW behind a frame of another length does not end it once more.
+            self.normal_end.next = false;
+            self.answered.d.next = false;
+            self.is_calibrated.d.next = false;
+            self.late.d.next = false;
+            self.under_way.d.next = false;
+        }
+    }
+
+    /// Time-outs, each counted from the beginning of its span.
+    fn run_timer(&mut self) {
+        self.was_hunting.d.next = self.progress.hunting.val();
+        self.was_center.d.next = self.center.val();
+        self.timer_step.d.next = !self.in_us.val() | self.tick_us.val();
+        if self.timer_step.q.val() {
+            self.timer.d.next = self.timer.q.val() + 1;
+        }
+        self.timer_limit.d.next = self.limit.val();
+        // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
+        self.timer_hit.d.next =
+            (self.timer.q.val() >= self.timer_limit.q.val()) & !self.cleared.q.val();
+        self.cleared.d.next = self.timer_clear.val() | self.accept.val() | self.rise_back.val();
+        // With the cycles that pass before the timer sees the beginning of its span; a frame that is given up has another one.
+        if self.rise_back.val() {
+            self.timer.d.next = bit_cast::<16, 3>(self.last_edge.ago_cycles.val()) + 2;
+        }
+        if self.timer_clear.val() {
+            self.timer.d.next = 0.into();
+            self.timer_hit.d.next = false;
+        }
+        if self.accept.val() {
+            self.timer.d.next = 2.into();
+        }
+    }
+
+    /// Where the recovery time begins.
+    fn find_last_edge(&mut self) {
+        self.in_tail.next = self.phase.q.val() == Phase::Tail;
+        self.in_recovery.next = self.phase.q.val() == Phase::Recovery;
+        self.cell_control.last_cell.next = self.in_tail.val() & self.was_center.q.val();
+        connect!(self.last_edge <= self;
+            clock, reset, start = accept, in_tail, in_recovery, will_rise, going, running
+        );
+        connect!(self.last_edge <= self.progress;
+            last_bit, no_pulse_left = all_sent, one_pulse_left = one_to_send, none_under_way, started
+        );
+        self.rise_back.next = self.last_edge.comes.val();
+        self.last_edge.was_center.next = self.was_center.q.val();
+        self.last_edge.tail_sampled.next = self.tail_sampled.q.val();
+        self.last_edge.in_supplement.next = self.in_supplement.q.val();
+    }
+
+    /// The verdict.
+    fn judge(&mut self) {
+        connect!(self.verdict <= self; found, answer_taken, prove = proof);
+        self.verdict.is_measuring.next = self.measuring.q.val();
+        self.verdict.settings_upset.next = self.settings_upset.val() | self.delay_upset.val();
+        self.verdict.give_up.next = self.give_up.val();
+        self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
+        connect!(self.verdict <= self; refuse, announce, normal_end, is_going = going, is_own = own);
+        AnswerCheckIn::link(&mut self.check, &mut self.verdict.check);
+        self.verdict.recovery_cycles.next = self.recovery.q.val();
+        self.verdict.recovery_min_cycles.next = self.limits.recovery_min_cycles.val();
+    }
+
+    /// Whether the propagation delay is known.
+    fn know_delay(&mut self) {
+        // The mean over several frames, if it is taken; the last of them makes the delay known.
+        if self.verdict.is_received.val()
+            & self.measuring.q.val()
+            & !(self.has_alignment.val() & self.is_fixed.val())
+        {
+            self.is_calibrated.d.next = true;
+            if self.has_alignment.val() & self.slow_now.q.val() {
+                self.passes.d.next = self.passes.q.val() + 1;
+                self.is_calibrated.d.next = self.passes.q.val().all();
+            }
+        }
+        // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
+        if self.verdict.is_doubtful.val() & !self.going.val() {
+            self.is_calibrated.d.next = false;
+        }
+    }
+
+    /// Triggers that are lost, and the result that is owed.
+    fn owe(&mut self) {
+        self.lost.next = self.next_frame.trigger.val()
+            & !self.going.val()
+            & ((!self.accept.val() & !self.idle.val())
+                | (self.accept.val() & self.own.val())
+                | self.owing.q.val());
+        self.verdict.lost.next = self.lost.val();
+        self.known.next =
+            self.is_calibrated.q.val() | (self.has_alignment.val() & self.is_fixed.val());
+        if self.verdict.told.publish.val() | self.refuse.val() {
+            self.owing.d.next = false;
+        }
+        // What else becomes of that frame is the trigger's result, not something that comes behind it.
+        if self.verdict.once_more.val() {
+            self.once_more.d.next = true;
+            self.answered.d.next = false;
+        }
+        if (self.accept.val() & !self.own.val())
+            | self.refuse.val()
+            | self.verdict.gave_up.val()
+            | !self.owing.q.val()
+        {
+            self.once_more.d.next = false;
+        }
+        if self.accept.val() & !self.own.val() {
+            self.owing.d.next = true;
+        }
+    }
+
+    /// What a frame begins with.
+    fn begin_frame(&mut self) {
+        if self.accept.val() {
+            self.measuring.d.next = !self.known.val();
+            self.under_way.d.next = true;
+            self.answered.d.next = false;
+            self.in_supplement.d.next = false;
+            self.acquiring.d.next =
+                !self.known.val() & !(self.has_alignment.val() & self.passes.q.val().any());
+            self.slow_now.d.next = !self.known.val();
+            self.tail_sampled.d.next = false;
+            self.late.d.next = false;
+        }
+    }
+
+    /// A clock that goes on after the answer, and how it is left.
+    fn run_on(&mut self) {
+        self.going.next = false;
+        for i in 0..self._runs {
+            connect!(self.runs[i] <= self; clock, reset);
+            self.runs[i].raise.next = self.accept.val()
+                & self.next_frame.continuous.val()
+                & self.known.val()
+                & !self.own.val();
+            self.runs[i].clear.next =
+                self.leave.val() | self.verdict.gave_up.val() | self.accept.val();
+            self.going.next = self.runs[i].is_set.val();
+        }
+        if self.leave.val() {
+            self.phase.d.next = Phase::Abort;
+            self.timer_clear.next = true;
+            self.leaving.d.next = true;
+        }
+        if self.verdict.gave_up.val() {
+            self.leaving.d.next = false;
+            self.probing.d.next = false;
+            self.settling.d.next = false;
+        }
+    }
+
+    /// Whether the delay has to be measured again.
+    fn measure_again(&mut self) {
+        self.high_at_tick.d.next = self.high_at_tick.q.val() & self.level.val();
+        if self.tick_us.val() {
+            self.high_at_tick.d.next = self.level.val();
+        }
+        // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
+        self.afresh.next =
+            self.next_frame.calibrate.val() | self.plugged.val() | self.delay_upset.val();
+        if self.afresh.val() | (self.has_alignment.val() & self.is_fixed.val()) {
+            self.is_calibrated.d.next = false;
+        }
+        if self.afresh.val() | self.verdict.gave_up.val() | self.verdict.is_doubtful.val() {
+            self.passes.d.next = 0.into();
+        }
+    }
+
+    /// The clock: when it runs, stands LOW, and ends.
+    fn hold_clock(&mut self) {
+        self.run_now.d.next = self.running.val();
+        self.cell_control.run.next = self.run_now.q.val();
+        self.start_now.d.next = self.accept.val();
+        self.control.start.next = self.start_now.q.val();
+        self.control.aborts.next = self.verdict.gave_up.val();
+        // Taking the start bit ends its cell; `started` comes when the comparison knows that.
+        self.sent.next =
+            self.last_edge.all_sent.val() & self.progress.started.val() & !self.going.val();
+        self.parking.next = false;
+        if self.has_all.val() & self.shape.has_supplement.val() & !self.in_supplement.q.val() {
+            self.parking.next = (self.sent.val() & (self.phase.q.val() == Phase::Frame))
+                | (self.phase.q.val() == Phase::Park);
+            self.sent.next = false;
+        }
+        self.hold.d.next = (self.phase.q.val() == Phase::FirstLow)
+            | self.last_edge.holds.val()
+            | self.parking.val();
+        self.hold_low.next = self.hold.q.val();
+        self.cell_control.drain.next = self.last_edge.stalled.val();
+        if self.has_all.val() {
+            self.cell_control.drain.next =
+                self.last_edge.stalled.val() | (self.phase.q.val() == Phase::Park);
+        }
+        self.stop_now.d.next = !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
+        // The high phase of the last pulse may last two cycles only.
+        self.stop.next = self.stop_now.q.val() | self.sent.val();
+    }
+
+    /// What is told.
+    fn tell(&mut self) {
+        self.control.acquire.next = self.acquiring.q.val();
+        self.cell_control.slow.next = self.slow_now.q.val();
+        self.busy.next = !self.idle.val()
+            | self.once_more.q.val()
+            | (self.next_frame.begin_own.val() & self.has_all.val());
+        ToldOut::link(&mut self.told, &mut self.verdict.told);
+        self.control.start_supplement.next = self.supplement_now.q.val();
+        self.over.next = self.verdict.over.val();
+        self.begun.next = self.accept.val() | self.refuse.val();
+        // A reset may have come in the middle of a frame. After power-up nobody has begun one.
+        if self.reset.val() {
+            self.phase.d.next = Phase::Abort;
+        }
+        self.is_at_rest.next = ((self.phase.q.val() == Phase::NotReady)
+            | (self.phase.q.val() == Phase::Ready))
+            & !self.verdict.is_telling.val();
+        self.displaced.next = self.verdict.displaced.val();
+        self.calibrated.next = self.known.val();
+        self.recovery_cycles.next = self.recovery.q.val();
+        self.probe.next =
+            self.probing.q.val() & (self.phase.q.val() == Phase::Abort) & self.has_diagnosis.val();
+        if self.phase.q.val() != Phase::Abort {
+            self.probing.d.next = false;
+            self.settling.d.next = false;
+        }
+        self.is_probed.next =
+            (self.probing.q.val() | self.settling.q.val()) & self.has_diagnosis.val();
+        self.control.going_on.next = self.going.val();
+    }
+
+    /// Health of the line.
+    fn watch_health(&mut self) {
+        connect!(self.health <= self; tick_us, level);
+        self.health.start.next = self.start_now.q.val();
+        self.health.under_way.next =
+            self.watched.val() & !self.shape.has_parameter.val() & !self.going.val();
+        self.health.watchdog_us.next = self.limits.watchdog_us.val();
+        self.health.probed.next = self.probed.val();
+        self.health.is_ready.next = self.phase.q.val() == Phase::Ready;
+    }
+}
