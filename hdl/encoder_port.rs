@@ -200,8 +200,8 @@ impl EncoderPort {
     }
 }
 
+#[kernel]
 impl Logic for EncoderPort {
-    #[kernel]
     fn update(&mut self) {
         for i in 0..self._channels {
             connect!(self.channel[i] <= self;

@@ -58,8 +58,8 @@ impl HalfPeriod {
     }
 }
 
+#[kernel]
 impl Logic for HalfPeriod {
-    #[kernel]
     fn update(&mut self) {
         self.half_cycles.next = self.period_cycles.val().get_bits::<10>(1);
         self.tick_now.next = self.hit.q.val();

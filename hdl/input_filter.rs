@@ -85,8 +85,8 @@ impl InputFilter {
     }
 }
 
+#[kernel]
 impl Logic for InputFilter {
-    #[kernel]
     fn update(&mut self) {
         self.sync1.d.next = self.pin.val();
         self.sync2.d.next = self.sync1.q.val();

@@ -103,8 +103,8 @@ impl Snapshot {
     }
 }
 
+#[kernel]
 impl Logic for Snapshot {
-    #[kernel]
     fn update(&mut self) {
         // The time stamp waits for its position as long as a frame lasts: it is guarded, too.
         self.timed.d.next = self.first_fall.val() | self.latched.val();

@@ -32,8 +32,8 @@ pub struct SureBit {
     no: Reg<Bit>,
 }
 
+#[kernel]
 impl Logic for SureBit {
-    #[kernel]
     fn update(&mut self) {
         if self.clear.val() | (self.yes.q.val() == self.no.q.val()) {
             self.yes.d.next = false;

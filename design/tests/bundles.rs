@@ -27,8 +27,8 @@ struct Counter {
     count: Reg<Bits<7>>,
 }
 
+#[kernel]
 impl Logic for Counter {
-    #[kernel]
     fn update(&mut self) {
         if self.offer.ready.val() {
             self.count.d.next = self.count.q.val() + 1;
@@ -47,8 +47,8 @@ struct Halved {
     pub half: OfferOut,
 }
 
+#[kernel]
 impl Logic for Halved {
-    #[kernel]
     fn update(&mut self) {
         self.half.value.next = self.whole.value.val() >> 1;
         self.whole.ready.next = self.half.ready.val();
@@ -84,8 +84,8 @@ impl Row {
     }
 }
 
+#[kernel]
 impl Logic for Row {
-    #[kernel]
     fn update(&mut self) {
         for i in 0..self._n {
             connect!(self.counters[i] <= self; clock, reset);

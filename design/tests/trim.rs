@@ -29,8 +29,8 @@ impl Adder {
     }
 }
 
+#[kernel]
 impl Logic for Adder {
-    #[kernel]
     fn update(&mut self) {
         self.total.d.next = self.total.q.val() + self.value.val();
         if self.doubles.val() {
@@ -59,8 +59,8 @@ struct Teller {
     is_watched: Constant<Bit>,
 }
 
+#[kernel]
 impl Logic for Teller {
-    #[kernel]
     fn update(&mut self) {
         self.cause.next = self.no_answer.val();
         if self.is_watched.val() & self.stuck.val() {
@@ -99,8 +99,8 @@ impl Pair {
     }
 }
 
+#[kernel]
 impl Logic for Pair {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, first, second);
         self.first.reset.next = self.reset.val();

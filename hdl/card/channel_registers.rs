@@ -140,8 +140,8 @@ impl ChannelRegisters {
     }
 }
 
+#[kernel]
 impl Logic for ChannelRegisters {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();

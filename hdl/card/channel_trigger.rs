@@ -61,8 +61,8 @@ impl ChannelTrigger {
     }
 }
 
+#[kernel]
 impl Logic for ChannelTrigger {
-    #[kernel]
     fn update(&mut self) {
         self.left.reset.next = self.reset.val() | self.restart.val();
 

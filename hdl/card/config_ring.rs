@@ -67,8 +67,8 @@ impl ConfigRing {
     }
 }
 
+#[kernel]
 impl Logic for ConfigRing {
-    #[kernel]
     fn update(&mut self) {
         if self.turn.val() {
             self.w0.d.next =

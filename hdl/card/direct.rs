@@ -87,8 +87,8 @@ impl DirectOutput {
     }
 }
 
+#[kernel]
 impl Logic for DirectOutput {
-    #[kernel]
     fn update(&mut self) {
         // Two words: where the position is cropped, and what is an error.
         self.selected.next =

@@ -84,8 +84,8 @@ impl Interrupt {
     }
 }
 
+#[kernel]
 impl Logic for Interrupt {
-    #[kernel]
     fn update(&mut self) {
         for i in 0..self._channels {
             connect!(self.had_result[i] <= self; clock, reset);

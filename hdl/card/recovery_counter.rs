@@ -66,8 +66,8 @@ impl RecoveryCounter {
     }
 }
 
+#[kernel]
 impl Logic for RecoveryCounter {
-    #[kernel]
     fn update(&mut self) {
         self.counter.d.next = self.counter.q.val() + 1;
         self.sampled.d.next = self.data_i.val();

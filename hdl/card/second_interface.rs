@@ -103,8 +103,8 @@ impl SecondInterface {
     }
 }
 
+#[kernel]
 impl Logic for SecondInterface {
-    #[kernel]
     fn update(&mut self) {
         self.sck_0.d.next = self.sck.val();
         self.sck_1.d.next = self.sck_0.q.val();

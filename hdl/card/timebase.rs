@@ -52,8 +52,8 @@ impl Timebase {
     }
 }
 
+#[kernel]
 impl Logic for Timebase {
-    #[kernel]
     fn update(&mut self) {
         self.hit.next = self.count.q.val() == self.last_count.val();
         self.count.d.next = self.count.q.val() + 1;

@@ -101,8 +101,8 @@ macro_rules! card_top {
             }
         }
 
+        #[kernel]
         impl Logic for $card {
-            #[kernel]
             fn update(&mut self) {
                 connect!(self.core <= self; clk_i, rst_i, trigger_i);
                 connect!(self.$front <= self; clock = clk_i, reset = rst_i);

@@ -70,8 +70,8 @@ impl Default for Trigger {
     }
 }
 
+#[kernel]
 impl Logic for Trigger {
-    #[kernel]
     fn update(&mut self) {
         self.sync0.d.next = self.pin.val();
         self.sync1.d.next = self.sync0.q.val();

@@ -89,8 +89,8 @@ impl UartReceiver {
 /// Shift register before the start bit: the one falls out with the stop bit.
 const MARKER: u64 = 1 << 9;
 
+#[kernel]
 impl Logic for UartReceiver {
-    #[kernel]
     fn update(&mut self) {
         self.sync0.d.next = self.rx.val();
         self.sync1.d.next = self.sync0.q.val();
@@ -174,8 +174,8 @@ impl UartTransmitter {
     }
 }
 
+#[kernel]
 impl Logic for UartTransmitter {
-    #[kernel]
     fn update(&mut self) {
         // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
         self.hit.next = self.count.q.val() == self.last_count.val();

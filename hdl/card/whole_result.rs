@@ -121,8 +121,8 @@ impl WholeResult {
     }
 }
 
+#[kernel]
 impl Logic for WholeResult {
-    #[kernel]
     fn update(&mut self) {
         // A frame that is given up before its position ends a cycle before its result is there; one that withdraws its position changes the
         // result a cycle after its end.

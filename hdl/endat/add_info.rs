@@ -94,8 +94,8 @@ impl AddInfo {
     }
 }
 
+#[kernel]
 impl Logic for AddInfo {
-    #[kernel]
     fn update(&mut self) {
         // A sample that comes first leaves nothing to look for.
         self.look_now.d.next = (self.remaining.q.val() == 1) & !self.sample.val();

@@ -59,8 +59,8 @@ impl ClockGen {
     }
 }
 
+#[kernel]
 impl Logic for ClockGen {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, half);
         connect!(self.half <= self; reset, period_cycles);

@@ -67,8 +67,8 @@ impl CommandSender {
     }
 }
 
+#[kernel]
 impl Logic for CommandSender {
-    #[kernel]
     fn update(&mut self) {
         // Cells in falling order: 7 = the lead-in 0 at F2, 6..1 = the command, 8 and 0 = driver off.
         self.cells.next = bit_cast::<8, 6>(self.command.val()) << 1;

@@ -47,8 +47,8 @@ impl CommandShape {
     }
 }
 
+#[kernel]
 impl Logic for CommandShape {
-    #[kernel]
     fn update(&mut self) {
         self.left.next = self.command.val().get_bits::<3>(3);
         self.right.next = self.command.val().get_bits::<3>(0);

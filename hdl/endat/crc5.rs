@@ -128,8 +128,8 @@ impl Default for Crc5Check {
     }
 }
 
+#[kernel]
 impl Logic for Crc5Check {
-    #[kernel]
     fn update(&mut self) {
         if self.word_bit.val() | self.crc_bit.val() {
             self.power.d.next = self.power.q.val() >> 1;
@@ -209,8 +209,8 @@ impl<const N: usize> Default for Crc5Fixed<N> {
     }
 }
 
+#[kernel]
 impl<const N: usize> Logic for Crc5Fixed<N> {
-    #[kernel]
     fn update(&mut self) {
         self.sum.next = self.constant.val();
         for i in 0..5 {
@@ -255,8 +255,8 @@ impl Default for Crc5Serial {
     }
 }
 
+#[kernel]
 impl Logic for Crc5Serial {
-    #[kernel]
     fn update(&mut self) {
         self.shifted.next = self.register.q.val() << 1;
         if self.enable.val() {

@@ -68,8 +68,8 @@ pub struct FrameSettings {
     parity_now: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for FrameSettings {
-    #[kernel]
     fn update(&mut self) {
         if self.is_at_rest.val() {
             self.period_held.d.next = self.wanted.period_cycles.val();

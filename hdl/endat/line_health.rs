@@ -53,8 +53,8 @@ pub struct LineHealth {
     stuck: Reg<Bit>,
 }
 
+#[kernel]
 impl Logic for LineHealth {
-    #[kernel]
     fn update(&mut self) {
         if self.tick_us.val() {
             self.passed_us.d.next = self.passed_us.q.val() + 1;

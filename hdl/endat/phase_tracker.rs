@@ -80,8 +80,8 @@ impl PhaseTracker {
     }
 }
 
+#[kernel]
 impl Logic for PhaseTracker {
-    #[kernel]
     fn update(&mut self) {
         self.take.d.next = self.edge_strobe.val() & !self.is_fixed.val();
         self.by.d.next = self.offset.val();

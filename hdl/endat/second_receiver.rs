@@ -101,8 +101,8 @@ impl SecondReceiver {
     }
 }
 
+#[kernel]
 impl Logic for SecondReceiver {
-    #[kernel]
     fn update(&mut self) {
         connect!(self.receiver <= self;
             clock, reset, payload_bits, infos, command

@@ -104,8 +104,8 @@ impl Service {
     }
 }
 
+#[kernel]
 impl Logic for Service {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, sequencer);
         self.sequencer.reset.next = self.reset.val();

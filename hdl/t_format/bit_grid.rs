@@ -27,8 +27,8 @@ pub struct BitGrid {
     left: Reg<Bits<7>>,
 }
 
+#[kernel]
 impl Logic for BitGrid {
-    #[kernel]
     fn update(&mut self) {
         self.left.d.next = self.left.q.val() - 1;
         if self.left.q.val() == 1 {

@@ -68,8 +68,8 @@ impl Default for TFormatChannel {
     }
 }
 
+#[kernel]
 impl Logic for TFormatChannel {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, filter, exchange, reply, outcome);
         self.filter.reset.next = self.reset.val();

@@ -163,8 +163,8 @@ impl AsyncDsp {
     }
 }
 
+#[kernel(clk_i, rst_i)]
 impl Logic for AsyncDsp {
-    #[kernel(clk_i, rst_i)]
     fn update(&mut self) {
         connect!(self.strobes <= self; clock = clk_i, reset = rst_i);
         connect!(self.filter <= self; clock = clk_i, reset = rst_i);

@@ -99,8 +99,8 @@ pub struct FieldOrder {
     is_multi_now: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for FieldOrder {
-    #[kernel]
     fn update(&mut self) {
         self.is_known.next = true;
         self.is_write.next = false;

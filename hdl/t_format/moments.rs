@@ -128,8 +128,8 @@ pub struct Moments {
     low_byte: Signal<Local, Bits<8>>,
 }
 
+#[kernel]
 impl Logic for Moments {
-    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, low, high, known);
 

@@ -54,8 +54,8 @@ pub struct Outcome {
     alarm_flags: Signal<Local, Bits<2>>,
 }
 
+#[kernel]
 impl Logic for Outcome {
-    #[kernel]
     fn update(&mut self) {
         self.strobe.d.next = self.publish.val();
         self.take.next = self.publish.val() & self.good.val();

@@ -12,8 +12,8 @@ pub struct LowestCause {
     pub cause: Signal<Out, Bits<5>>,
 }
 
+#[kernel]
 impl Logic for LowestCause {
-    #[kernel]
     fn update(&mut self) {
         self.cause.next = 0.into();
         if self.flags.val().get_bit(15) {

@@ -34,8 +34,8 @@ pub struct Reply {
     multi_sum: Reg<Bit>,
 }
 
+#[kernel]
 impl Logic for Reply {
-    #[kernel]
     fn update(&mut self) {
         self.single_sum.reset.next = self.reset.val() | self.idle.val();
         self.multi_sum.reset.next = self.reset.val() | self.idle.val();

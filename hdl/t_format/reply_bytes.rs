@@ -53,8 +53,8 @@ pub struct ReplyBytes {
     forget: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for ReplyBytes {
-    #[kernel]
     fn update(&mut self) {
         self.forget.next = self.reset.val() | self.idle.val();
         self.single_sum.reset.next = self.forget.val();

@@ -29,8 +29,8 @@ pub struct RequestBits {
     address_byte: Signal<Local, Bits<8>>,
 }
 
+#[kernel]
 impl Logic for RequestBits {
-    #[kernel]
     fn update(&mut self) {
         self.parity.next = self.request_id.val().get_bit(0)
             ^ self.request_id.val().get_bit(1)

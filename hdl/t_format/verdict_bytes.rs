@@ -28,8 +28,8 @@ pub struct VerdictBytes {
     alarms: Signal<Local, Bits<8>>,
 }
 
+#[kernel]
 impl Logic for VerdictBytes {
-    #[kernel]
     fn update(&mut self) {
         self.primary.flags.next = self.flags.val();
         self.complains.next = self.flags.val().get_bits::<2>(9).any();

@@ -62,8 +62,8 @@ pub struct ApbFront {
     misaligned: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for ApbFront {
-    #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
             clock, reset, tick_us

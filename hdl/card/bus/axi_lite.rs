@@ -91,8 +91,8 @@ pub struct AxiLiteFront {
     goes_read: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for AxiLiteFront {
-    #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
             clock, reset, tick_us

@@ -86,8 +86,8 @@ pub struct ParallelFront {
     is_busy: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for ParallelFront {
-    #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
             clock, reset, tick_us

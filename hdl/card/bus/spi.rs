@@ -123,8 +123,8 @@ impl Default for SpiFront {
     }
 }
 
+#[kernel]
 impl Logic for SpiFront {
-    #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
             clock, reset, tick_us, keep_moment = selected

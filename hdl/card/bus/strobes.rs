@@ -56,8 +56,8 @@ pub struct BusStrobes {
     is_writing: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for BusStrobes {
-    #[kernel]
     fn update(&mut self) {
         self.cs_0.d.next = !self.cs_n.val();
         self.cs_1.d.next = self.cs_0.q.val();

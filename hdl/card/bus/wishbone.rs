@@ -63,8 +63,8 @@ pub struct WishboneFront {
     refused: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for WishboneFront {
-    #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
             clock, reset, tick_us

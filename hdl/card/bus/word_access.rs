@@ -64,8 +64,8 @@ pub struct WordAccess {
     goes_on: Signal<Local, Bit>,
 }
 
+#[kernel]
 impl Logic for WordAccess {
-    #[kernel]
     fn update(&mut self) {
         self.is_result.next = !self.write_in.val() & (self.address_in.val().get_bits::<4>(7) == 3);
         self.is_config.next =

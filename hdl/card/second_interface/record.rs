@@ -50,8 +50,8 @@ impl SecondRecord {
     }
 }
 
+#[kernel]
 impl Logic for SecondRecord {
-    #[kernel]
     fn update(&mut self) {
         for i in 0..self._words {
             connect!(self.held[i] <= self; clock, reset);

@@ -179,8 +179,8 @@ impl FrameBuffer {
     }
 }
 
+#[kernel]
 impl Logic for FrameBuffer {
-    #[kernel]
     fn update(&mut self) {
         // Each frame begins anew.
         self.at.reset.next = !self.writing.q.val();

@@ -129,8 +129,8 @@ impl SetChannel {
     }
 }
 
+#[kernel]
 impl Logic for SetChannel {
-    #[kernel]
     fn update(&mut self) {
         if self.result_strobe.val() {
             self.waiting.d.next = false;

@@ -71,8 +71,8 @@ impl RunChannel {
     }
 }
 
+#[kernel]
 impl Logic for RunChannel {
-    #[kernel]
     fn update(&mut self) {
         // In the cycle of a result what is shown is the new one.
         self.ready_now.next = self.waits.q.val()

@@ -115,8 +115,8 @@ impl ServiceChannel {
     }
 }
 
+#[kernel]
 impl Logic for ServiceChannel {
-    #[kernel]
     fn update(&mut self) {
         if self.displaced.val() {
             self.lost_count.d.next = self.lost_count.q.val() + 1;

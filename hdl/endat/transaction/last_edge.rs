@@ -82,8 +82,8 @@ impl LastEdge {
     }
 }
 
+#[kernel]
 impl Logic for LastEdge {
-    #[kernel]
     fn update(&mut self) {
         self.sent.d.next = self.no_pulse_left.val();
         // With two system clock cycles in a bit there is no time to count this pulse.

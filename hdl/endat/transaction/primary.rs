@@ -12,8 +12,8 @@ pub struct PrimaryCause {
     pub cause: Signal<Out, Bits<5>>,
 }
 
+#[kernel]
 impl Logic for PrimaryCause {
-    #[kernel]
     fn update(&mut self) {
         self.cause.next = 0.into();
         if self.flags.val().get_bit(7) {

@@ -164,8 +164,8 @@ impl Verdict {
     }
 }
 
+#[kernel]
 impl Logic for Verdict {
-    #[kernel]
     fn update(&mut self) {
         // The frame's bits stay where they are until the verdict: an upset of one of them shows in its CRC.
         // Synthesis does not see by itself that some flags are never set.
