@@ -97,6 +97,7 @@ impl Builder {
             enums: &self.design.enums,
             block_enums: std::mem::take(&mut draft.enums),
             loops: vec![],
+            is_repeated: false,
         };
         let mut statements = scope.statements(kernel)?;
         draft.symbols = scope.symbols;

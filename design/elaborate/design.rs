@@ -182,6 +182,8 @@ pub struct Process {
 pub enum Statement {
     /// Assigns `value` to the bits of `net` from `low_bit` upwards.
     Assign {
+        /// About it, and what comes behind it.
+        docs: Vec<String>,
         /// Target.
         net: NetId,
         /// Lowest bit assigned.
@@ -191,6 +193,8 @@ pub enum Statement {
     },
     /// Executes one of two branches.
     If {
+        /// About it.
+        docs: Vec<String>,
         /// One bit.
         condition: Expr,
         /// If it is 1.
@@ -200,6 +204,8 @@ pub enum Statement {
     },
     /// Executes the arm whose value equals the subject.
     Case {
+        /// About it.
+        docs: Vec<String>,
         /// What is compared.
         subject: Expr,
         /// Constants of the subject's width, and what to execute.
@@ -342,6 +348,13 @@ pub fn restricted(statements: &[Statement], set: &BTreeSet<NetId>) -> Vec<Statem
     parts.collect()
 }
 
+/// Hands on to the first of some statements what was written about one that they stand for.
+pub fn hand_on(docs: &[String], to: &mut [Statement]) {
+    if let Some(first) = to.first_mut() {
+        first.docs_mut().splice(0..0, docs.iter().cloned());
+    }
+}
+
 /// The nets that statements assign.
 pub fn targets(statements: &[Statement]) -> BTreeSet<NetId> {
     let mut nets = BTreeSet::new();
@@ -354,12 +367,31 @@ pub fn targets(statements: &[Statement]) -> BTreeSet<NetId> {
 }
 
 impl Statement {
+    /// What is written about it.
+    pub fn docs(&self) -> &[String] {
+        match self {
+            Statement::Assign { docs, .. }
+            | Statement::If { docs, .. }
+            | Statement::Case { docs, .. } => docs,
+        }
+    }
+
+    /// The same, to change it.
+    pub fn docs_mut(&mut self) -> &mut Vec<String> {
+        match self {
+            Statement::Assign { docs, .. }
+            | Statement::If { docs, .. }
+            | Statement::Case { docs, .. } => docs,
+        }
+    }
+
     /// Calls `visit` for every net that the statement assigns, with the lowest bit and the width.
     pub fn for_each_target(&self, visit: &mut dyn FnMut(NetId, usize, usize)) {
         if let Statement::Assign {
             net,
             low_bit,
             value,
+            ..
         } = self
         {
             visit(*net, *low_bit, value.width_bits);
@@ -442,18 +474,21 @@ impl Statement {
         match self {
             Statement::Assign { net, .. } => set.contains(net).then(|| self.clone()),
             Statement::If {
+                docs,
                 condition,
                 then,
                 otherwise,
             } => {
                 let (then, otherwise) = (block(then), block(otherwise));
                 (!then.is_empty() || !otherwise.is_empty()).then(|| Statement::If {
+                    docs: docs.clone(),
                     condition: condition.clone(),
                     then,
                     otherwise,
                 })
             }
             Statement::Case {
+                docs,
                 subject,
                 arms,
                 default,
@@ -462,6 +497,7 @@ impl Statement {
                 let default = block(default);
                 let is_used = !default.is_empty() || arms.iter().any(|(_, b)| !b.is_empty());
                 is_used.then(|| Statement::Case {
+                    docs: docs.clone(),
                     subject: subject.clone(),
                     arms,
                     default,

@@ -117,6 +117,7 @@ impl Draft<'_> {
             if used.contains(&net) {
                 value.for_each_net_mut(&mut |net| rename(net));
                 statements.push(Statement::Assign {
+                    docs: vec![],
                     net,
                     low_bit: 0,
                     value,

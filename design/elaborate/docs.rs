@@ -168,6 +168,24 @@ fn plain(line: &str) -> String {
     out.replace('`', "")
 }
 
+/// A comment of a kernel, as rust-hdl hands it on: some or all of the tokens of `comment!("...")`.
+pub(super) fn comment(tokens: &str) -> String {
+    let text = ["comment!", "comment !"]
+        .iter()
+        .find_map(|name| tokens.strip_prefix(name)?.trim_start().strip_prefix("(\""))
+        .unwrap_or(tokens);
+    let text = text.strip_suffix("\")").unwrap_or(text);
+    let mut out = String::new();
+    let mut letters = text.chars();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '\\' => out.extend(letters.next()),
+            _ => out.push(letter),
+        }
+    }
+    plain(&out)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -213,5 +231,20 @@ mod tests {
         let strobe = ("frame$strobe".to_owned(), vec!["It is new.".to_owned()]);
         assert_eq!(timer.parts, [clock, ("level".to_owned(), vec![]), strobe]);
         assert_eq!(state.parts[0].1, ["Nothing."]);
+    }
+
+    /// Catches tokens in a comment, whichever way the compiler sets them; rust-hdl takes the end of all of them away.
+    #[test]
+    fn a_comment_is_what_its_author_wrote() {
+        for tokens in [
+            r#"comment!(" The \"last\" bit of [`word`].")"#,
+            r#"comment!(" The \"last\" bit of [`word`]."#,
+            "comment! (\" The \\\"last\\\" bit of `word`.",
+            "comment!\n(\" The \\\"last\\\" bit of `word`.",
+            r#"comment ! (" The \"last\" bit of [`x::word`]."#,
+            r#" The \"last\" bit of `word`."#,
+        ] {
+            assert_eq!(comment(tokens), "The \"last\" bit of word.", "{tokens}");
+        }
     }
 }

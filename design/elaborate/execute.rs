@@ -11,6 +11,7 @@ pub fn execute(statements: &[Statement], parameters: &[u128], values: &mut BTree
                 net,
                 low_bit,
                 value,
+                ..
             } => {
                 let bits = mask(value.width_bits) << low_bit;
                 let value = evaluate(value, parameters, values) << low_bit;
@@ -21,6 +22,7 @@ pub fn execute(statements: &[Statement], parameters: &[u128], values: &mut BTree
                 condition,
                 then,
                 otherwise,
+                ..
             } => match evaluate(condition, parameters, values) {
                 0 => execute(otherwise, parameters, values),
                 _ => execute(then, parameters, values),
@@ -29,6 +31,7 @@ pub fn execute(statements: &[Statement], parameters: &[u128], values: &mut BTree
                 subject,
                 arms,
                 default,
+                ..
             } => {
                 let subject = evaluate(subject, parameters, values);
                 let arm = arms

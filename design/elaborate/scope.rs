@@ -3,8 +3,9 @@
 mod expr;
 
 use super::design::{
-    Direction, EnumId, EnumType, Expr, ExprKind, Net, NetId, Parameter, Statement,
+    hand_on, Direction, EnumId, EnumType, Expr, ExprKind, Net, NetId, Parameter, Statement,
 };
+use super::docs;
 use super::tree::BlockNode;
 use super::ElaborateError;
 use expr::Value;
@@ -38,6 +39,8 @@ pub(super) struct Scope<'a> {
     pub block_enums: Vec<EnumId>,
     /// Variables of the loops around the present statement.
     pub loops: Vec<(String, usize)>,
+    /// Within a loop, behind its first round: what is written there has been said.
+    pub is_repeated: bool,
 }
 
 impl Scope<'_> {
@@ -82,8 +85,16 @@ impl Scope<'_> {
 
     pub fn statements(&mut self, block: &VerilogBlock) -> Result<Vec<Statement>> {
         let mut out = vec![];
+        let mut docs = vec![];
         for statement in block {
+            if let VerilogStatement::Comment(text) = statement {
+                docs.extend((!self.is_repeated).then(|| docs::comment(text)));
+                continue;
+            }
+            let first = out.len();
             self.statement(statement, &mut out)?;
+            hand_on(&docs, &mut out[first..]);
+            docs.clear();
         }
         Ok(out)
     }
@@ -94,6 +105,7 @@ impl Scope<'_> {
                 let (net, field) = self.target(target)?;
                 let value = self.expr(value, self.nets[net].width_bits, &field)?;
                 out.push(Statement::Assign {
+                    docs: vec![],
                     net,
                     low_bit: 0,
                     value,
@@ -122,6 +134,7 @@ impl Scope<'_> {
                 };
                 let value = self.expr(replacement, *width, &field)?;
                 out.push(Statement::Assign {
+                    docs: vec![],
                     net,
                     low_bit,
                     value,
@@ -130,13 +143,17 @@ impl Scope<'_> {
             VerilogStatement::If(conditional) => self.conditional(conditional, out)?,
             VerilogStatement::Match(m) => self.case(m, out)?,
             VerilogStatement::Loop(l) => {
+                let is_repeated = self.is_repeated;
                 for index in l.from.as_usize()..l.to.as_usize() {
                     self.loops.push((l.index.clone(), index));
                     let body = self.statements(&l.block);
                     self.loops.pop();
                     out.extend(body?);
+                    self.is_repeated = true;
                 }
+                self.is_repeated = is_repeated;
             }
+            // Handed on to the statement behind it.
             VerilogStatement::Comment(_) => {}
             VerilogStatement::Link(links) => {
                 for link in links {
@@ -163,6 +180,7 @@ impl Scope<'_> {
         let (net, field) = self.target(&Ast::Signal(target))?;
         let value = self.expr(&Ast::Signal(source), self.nets[net].width_bits, &field)?;
         Ok(Statement::Assign {
+            docs: vec![],
             net,
             low_bit: 0,
             value,
@@ -212,6 +230,7 @@ impl Scope<'_> {
             ExprKind::Constant(0) => out.extend(otherwise),
             ExprKind::Constant(_) => out.extend(then),
             _ => out.push(Statement::If {
+                docs: vec![],
                 condition,
                 then,
                 otherwise,
@@ -240,6 +259,7 @@ impl Scope<'_> {
             }
         }
         out.push(Statement::Case {
+            docs: vec![],
             subject,
             arms,
             default,

@@ -245,6 +245,7 @@ impl Builder<'_> {
         value.for_each_net_mut(&mut |net| *net = nets[*net]);
         self.processes.push(FlatProcess {
             statements: vec![Statement::Assign {
+                docs: vec![],
                 net,
                 low_bit: 0,
                 value,

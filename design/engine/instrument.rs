@@ -118,6 +118,7 @@ fn not(a: Expr) -> Expr {
 fn assign(net: usize, value: Expr) -> FlatProcess {
     FlatProcess {
         statements: vec![Statement::Assign {
+            docs: vec![],
             net,
             low_bit: 0,
             value,

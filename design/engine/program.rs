@@ -224,6 +224,7 @@ impl Compiler {
                 net,
                 low_bit,
                 value,
+                ..
             } => {
                 let bits = mask(value.width_bits) << low_bit;
                 let (to, low_bit) = (*net, *low_bit);
@@ -243,6 +244,7 @@ impl Compiler {
                 condition,
                 then,
                 otherwise,
+                ..
             } => {
                 let a = self.value_into(condition, parameters, None);
                 let skip = self.hole();
@@ -268,6 +270,7 @@ impl Compiler {
                 subject,
                 arms,
                 default,
+                ..
             } => {
                 let a = self.value_into(subject, parameters, None);
                 let mut ends = vec![];

@@ -4,19 +4,20 @@
 //! where rust-hdl has `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
 
 mod bundle;
+mod comments;
 mod connect;
 mod parts;
 
 use proc_macro::TokenStream;
 use proc_macro2::{Ident, TokenStream as TokenStream2};
-use quote::{format_ident, quote, quote_spanned, ToTokens};
+use quote::{format_ident, quote, quote_spanned};
 use std::collections::BTreeSet;
 use syn::punctuated::Punctuated;
 use syn::visit::{visit_angle_bracketed_generic_arguments, visit_expr_field, Visit};
 use syn::{
     parse_macro_input, AngleBracketedGenericArguments, Attribute, Data, DeriveInput, Expr,
-    ExprField, Field, Fields, GenericArgument, GenericParam, ImplItem, Item, ItemFn, Lit, LitStr,
-    Member, Token, Type, TypePath,
+    ExprField, Field, Fields, GenericArgument, GenericParam, ImplItem, ItemFn, ItemImpl, Lit,
+    LitStr, Member, Token, Type, TypePath,
 };
 
 /// The parts of a block, and what is written about them. Signals and bundles begin empty, registers with 0 or what `#[start(...)]` says,
@@ -204,15 +205,22 @@ fn docs<'a>(
 
 /// The documentation at the head of the file, with its drawing, of a block that is the only one there.
 fn lines_of_file(name: &Ident) -> Vec<Lit> {
-    let file = name.span().unwrap().local_file();
-    let text = file.and_then(|file| std::fs::read_to_string(file).ok());
-    let text = text.filter(|text| text.matches("Block)]\n").count() == 1);
-    let text = text.unwrap_or_default();
+    let text = source_of(name.span());
+    if text.matches("Block)]\n").count() != 1 {
+        return vec![];
+    }
     let head = text.lines().map_while(|line| line.strip_prefix("//!"));
     let shown = head.filter(|line| !line.trim_start().starts_with("```"));
     shown
         .map(|line| Lit::Str(LitStr::new(line, name.span())))
         .collect()
+}
+
+/// The text of the file that something stands in; empty where there is none.
+fn source_of(place: proc_macro2::Span) -> String {
+    let file = place.unwrap().local_file();
+    file.and_then(|file| std::fs::read_to_string(file).ok())
+        .unwrap_or_default()
 }
 
 /// A part and the lines of its documentation.
@@ -324,8 +332,10 @@ pub fn ports(arguments: TokenStream, item: TokenStream) -> TokenStream {
 ///
 /// `#[kernel(clk_i, rst_i)]` where clock and reset have other names than `clock` and `reset`. Registers in lists are the kernel's.
 ///
-/// A long kernel is said in parts: `#[kernel]` stands on the whole `impl Logic for ...`, whose other functions are written out where
-/// `update` or one of them calls them, as a statement or as the arm of a match:
+/// Its comments are handed on, too: they stand in the emitted text, before the same statements.
+///
+/// A long kernel is said in parts: other functions beside `update` are written out where it, or one of them, calls them, as a statement or
+/// as the arm of a match. What documents a part stands in the emitted text before its first statement.
 ///
 /// ```ignore
 /// #[kernel]
@@ -350,25 +360,33 @@ pub fn ports(arguments: TokenStream, item: TokenStream) -> TokenStream {
 #[proc_macro_attribute]
 pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let parser = Punctuated::<Ident, Token![,]>::parse_terminated;
-    let names: Vec<Ident> = parse_macro_input!(arguments with parser)
-        .into_iter()
-        .collect();
-    let expanded = match parse_macro_input!(item as Item) {
-        Item::Fn(kernel) => whole_kernel(names, kernel),
-        Item::Impl(mut block) => parts::kernel_of(&mut block)
-            .and_then(|kernel| whole_kernel(names, kernel))
-            .map(|kernel| {
-                block.items.push(ImplItem::Verbatim(kernel));
-                block.into_token_stream()
-            }),
-        other => Err(syn::Error::new_spanned(
-            other,
-            "a kernel is `fn update`, or `impl Logic` with it and its parts",
-        )),
-    };
-    expanded
-        .unwrap_or_else(|wrong| wrong.into_compile_error())
-        .into()
+    let names = parse_macro_input!(arguments with parser);
+    let mut item = parse_macro_input!(item as ItemImpl);
+    let source = source_of(item.impl_token.span);
+    let source: Vec<String> = source.lines().map(str::to_owned).collect();
+    for inner in &mut item.items {
+        if let ImplItem::Fn(function) = inner {
+            comments::lift(function, &source);
+        }
+    }
+    let kernel = parts::kernel_of(&mut item)
+        .and_then(|kernel| whole_kernel(names.into_iter().collect(), kernel));
+    match kernel {
+        Err(wrong) => wrong.into_compile_error().into(),
+        Ok(kernel) => {
+            item.items.push(ImplItem::Verbatim(kernel));
+            quote! {
+                // What rust-hdl takes for a comment, and the compiler for nothing.
+                #[allow(unused_macros)]
+                macro_rules! comment {
+                    ($text:literal) => {};
+                }
+
+                #item
+            }
+            .into()
+        }
+    }
 }
 
 /// What stands in the block for this kernel.

@@ -10,7 +10,7 @@ pub use header::Header;
 pub(crate) use names::{variant_name, Names};
 use order::used_parameters;
 pub(crate) use order::{
-    constant_values, direct_next, processes, reads_and_targets, register_groups,
+    constant_values, direct_next, processes, reads_and_targets, register_groups, DirectNext,
 };
 pub(crate) use row::{is_row, parts, Part};
 pub(crate) use scope::Scope;

@@ -3,14 +3,23 @@
 use crate::elaborate::{execute, Expr, ExprKind, Module, NetId, Process, Register, Statement};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// The next value of a register that is a single expression.
+#[derive(Clone)]
+pub(crate) struct DirectNext {
+    pub value: Expr,
+    /// What is written about it.
+    pub docs: Vec<String>,
+}
+
 /// Registers whose next value is a single expression, and that expression.
-pub(crate) fn direct_next(module: &Module) -> BTreeMap<NetId, Expr> {
+pub(crate) fn direct_next(module: &Module) -> BTreeMap<NetId, DirectNext> {
     let next: BTreeSet<NetId> = module.registers.iter().map(|r| r.next).collect();
     let single = |process: &Process| match &process.statements[..] {
-        [Statement::Assign { net, value, .. }]
-            if next.contains(net) && value.width_bits == module.nets[*net].width_bits =>
-        {
-            Some((*net, value.clone()))
+        [Statement::Assign {
+            net, value, docs, ..
+        }] if next.contains(net) && value.width_bits == module.nets[*net].width_bits => {
+            let (value, docs) = (value.clone(), docs.clone());
+            Some((*net, DirectNext { value, docs }))
         }
         _ => None,
     };
@@ -20,7 +29,7 @@ pub(crate) fn direct_next(module: &Module) -> BTreeMap<NetId, Expr> {
 /// The processes that are printed: those of [`direct_next`] stand where their register is.
 pub(crate) fn processes<'a>(
     module: &'a Module,
-    direct: &BTreeMap<NetId, Expr>,
+    direct: &BTreeMap<NetId, DirectNext>,
 ) -> Vec<&'a Process> {
     let is_direct =
         |s: &Statement| matches!(s, Statement::Assign { net, .. } if direct.contains_key(net));

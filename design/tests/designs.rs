@@ -130,6 +130,7 @@ impl Maker {
     fn drive(&mut self, net: NetId) {
         let width = self.module.nets[net].width_bits;
         let whole = |value| Statement::Assign {
+            docs: vec![],
             net,
             low_bit: 0,
             value,
@@ -138,6 +139,7 @@ impl Maker {
         let part = self.rng.in_range(1, width as u64) as usize;
         let low_bit = self.rng.in_range(0, (width - part) as u64) as usize;
         let change = Statement::Assign {
+            docs: vec![],
             net,
             low_bit,
             value: self.expr(part, 2),
@@ -151,11 +153,13 @@ impl Maker {
         match self.rng.in_range(0, 2) {
             0 => {}
             1 => statements.push(Statement::If {
+                docs: vec![],
                 condition: input("in_1", self),
                 then: vec![change],
                 otherwise: vec![whole(self.expr(width, 2))],
             }),
             _ => statements.push(Statement::Case {
+                docs: vec![],
                 subject: input("in_2", self),
                 arms: vec![
                     (Expr::constant(1, 2), vec![change]),

@@ -2,6 +2,7 @@
 
 mod bundles;
 mod clean;
+mod comments;
 mod designs;
 mod errors;
 mod generator;

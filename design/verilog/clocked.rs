@@ -47,7 +47,10 @@ impl ModulePrinter<'_> {
         for register in group {
             let name = self.module.nets[register.q].name.clone();
             let next = match self.direct_next.get(&register.next).cloned() {
-                Some(expr) => self.expression(&expr, &name, &mut Helpers::default()),
+                Some(direct) => {
+                    out.push_str(&comment(&direct.docs, pad));
+                    self.expression(&direct.value, &name, &mut Helpers::default())
+                }
                 None => self.module.nets[register.next].name.clone(),
             };
             out.push_str(&format!("{pad}{name} <= {next};\n"));

@@ -4,8 +4,10 @@ mod constants;
 pub(super) mod expression;
 
 use super::text::{comment, properties, ranges, vector, INDENT};
-use crate::elaborate::{mask, Design, Direction, Expr, Module, NetId, Statement};
-use crate::printing::{constant_values, direct_next, processes, reads_and_targets, Scope};
+use crate::elaborate::{mask, Design, Direction, Module, NetId, Statement};
+use crate::printing::{
+    constant_values, direct_next, processes, reads_and_targets, DirectNext, Scope,
+};
 use expression::{literal, range, Helper, Helpers};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +30,7 @@ pub(super) struct ModulePrinter<'a> {
     /// Targets of the process that is being printed.
     pub process_targets: BTreeSet<NetId>,
     /// Next values of registers that are one expression: they need no net.
-    pub direct_next: BTreeMap<NetId, Expr>,
+    pub direct_next: BTreeMap<NetId, DirectNext>,
 }
 
 impl<'a> ModulePrinter<'a> {
@@ -229,12 +231,14 @@ impl<'a> ModulePrinter<'a> {
             net,
             low_bit: 0,
             value,
+            docs,
         }] = statements
         {
             if value.width_bits == self.module.nets[*net].width_bits && !reads.contains(net) {
                 let name = self.module.nets[*net].name.clone();
                 let text = self.expression(value, &name, &mut Helpers::default());
-                return format!("{INDENT}assign {name} = {text};\n");
+                let docs = comment(docs, INDENT);
+                return format!("{docs}{INDENT}assign {name} = {text};\n");
             }
         }
         if reads.is_subset(&self.process_targets) {
@@ -283,11 +287,13 @@ impl<'a> ModulePrinter<'a> {
     fn statement(&mut self, statement: &Statement, depth: usize) -> String {
         let pad = INDENT.repeat(depth);
         let mut helpers = Helpers::default();
+        let docs = comment(statement.docs(), &pad);
         let text = match statement {
             Statement::Assign {
                 net,
                 low_bit,
                 value,
+                ..
             } => {
                 let target = &self.module.nets[*net];
                 let place = range(&target.name, *low_bit, value.width_bits, target.width_bits);
@@ -298,6 +304,7 @@ impl<'a> ModulePrinter<'a> {
                 condition,
                 then,
                 otherwise,
+                ..
             } => {
                 let condition = self.expression(condition, "condition", &mut helpers);
                 format!(
@@ -310,6 +317,7 @@ impl<'a> ModulePrinter<'a> {
                 subject,
                 arms,
                 default,
+                ..
             } => {
                 let subject = self.expression(subject, "subject", &mut helpers);
                 let mut text = format!("{pad}case ({subject})\n");
@@ -332,14 +340,14 @@ impl<'a> ModulePrinter<'a> {
             .map(|h| format!("{pad}{} = {};\n", h.name, h.text))
             .collect();
         self.inside.extend(helpers.nets);
-        before + &text
+        docs + &before + &text
     }
 
     fn otherwise(&mut self, otherwise: &[Statement], depth: usize) -> String {
         let pad = INDENT.repeat(depth);
         match otherwise {
             [] => format!("{pad}end\n"),
-            [Statement::If { .. }] => {
+            [Statement::If { docs, .. }] if docs.is_empty() => {
                 let text = self.statement(&otherwise[0], depth);
                 match text.trim_start().starts_with("if (") {
                     true => format!("{pad}end else {}", text.trim_start()),

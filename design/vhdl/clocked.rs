@@ -56,7 +56,10 @@ impl ModulePrinter<'_> {
         for register in group {
             let name = self.module.nets[register.q].name.clone();
             let next = match self.direct_next.get(&register.next).cloned() {
-                Some(expr) => self.assigned(&expr),
+                Some(direct) => {
+                    out.push_str(&comment(&direct.docs, pad));
+                    self.assigned(&direct.value)
+                }
                 None => self.reference(register.next),
             };
             out.push_str(&format!("{pad}{name} <= {next};\n"));

@@ -7,8 +7,8 @@ mod process;
 
 use super::package::package_name;
 use super::text::{comment, Context};
-use crate::elaborate::{Design, Direction, Expr, ExprKind, Module, NetId};
-use crate::printing::{direct_next, reads_and_targets, Scope, INDENT};
+use crate::elaborate::{Design, Direction, ExprKind, Module, NetId};
+use crate::printing::{direct_next, reads_and_targets, DirectNext, Scope, INDENT};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the architecture of a module is called.
@@ -45,7 +45,7 @@ pub(super) struct ModulePrinter<'a> {
     is_top: bool,
     pub scope: Scope<'a>,
     /// Next values of registers that are one expression: they need no signal.
-    pub direct_next: BTreeMap<NetId, Expr>,
+    pub direct_next: BTreeMap<NetId, DirectNext>,
     /// Signals in the place of output ports: VHDL-93 does not read a port that it drives.
     inner: BTreeMap<NetId, String>,
     /// Signals of instances' inputs that are no names.

@@ -332,7 +332,6 @@ impl Logic for Stream {
 
     /// The host's words.
     fn answer_host(&mut self) {
-        // The host's words.
         self.reads.next = self.access.val() & self.selected.val() & !self.write.val();
         self.writes.next = self.access.val() & self.selected.val() & self.write.val();
         self.clear.next =

@@ -244,7 +244,6 @@ impl Logic for LineMonitor {
 
     /// Alarms: the tracked delay has drifted, or an edge was too far from its place.
     fn raise_alarms(&mut self) {
-        // Alarms.
         self.was_calibrated.d.next = self.calibrated.val();
         if self.calibrated.val() & !self.was_calibrated.q.val() {
             self.drift_reference.d.next = self.phase.val();

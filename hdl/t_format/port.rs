@@ -296,7 +296,6 @@ impl Logic for TFormatPort {
 
     /// The last good position. A part that does not come stays as it was, if that was good.
     fn show_result(&mut self) {
-        // A part that does not come stays as it was, if that was good.
         self.single.next = 0.into();
         if self.has_had_single.q.val() {
             self.single.next = self.snapshot.result.position.val().get_bits::<24>(0);

@@ -39,6 +39,7 @@ fn walk(
                 net,
                 low_bit,
                 value,
+                ..
             } => {
                 check_reads(value, set, assigned)?;
                 *assigned.entry(*net).or_default() |= mask(value.width_bits) << low_bit;
@@ -47,6 +48,7 @@ fn walk(
                 condition,
                 then,
                 otherwise,
+                ..
             } => {
                 check_reads(condition, set, assigned)?;
                 branches(&[then, otherwise], set, assigned)?;
@@ -55,6 +57,7 @@ fn walk(
                 subject,
                 arms,
                 default,
+                ..
             } => {
                 check_reads(subject, set, assigned)?;
                 let mut blocks: Vec<&[Statement]> =

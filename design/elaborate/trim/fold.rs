@@ -1,6 +1,8 @@
 //! Statements without the branches that are never taken, expressions without what is known.
 
-use super::super::design::{mask, BinaryOp, Expr, ExprKind, Module, NetId, Statement, UnaryOp};
+use super::super::design::{
+    hand_on, mask, BinaryOp, Expr, ExprKind, Module, NetId, Statement, UnaryOp,
+};
 use super::super::pieces::replaced;
 use super::known::{assign, known, meet, ways, Known, Values};
 
@@ -22,6 +24,7 @@ fn one(module: &Module, statement: &Statement, values: &mut Values, out: &mut Ve
         net,
         low_bit,
         value,
+        ..
     } = statement
     {
         let part = known(module, value, values);
@@ -30,6 +33,7 @@ fn one(module: &Module, statement: &Statement, values: &mut Values, out: &mut Ve
         let bits = replaced(*net, &short).filter(|_| is_whole);
         let (low_bit_now, value_now) = bits.unwrap_or((*low_bit, short));
         out.push(Statement::Assign {
+            docs: statement.docs().to_vec(),
             net: *net,
             low_bit: low_bit_now,
             value: value_now,
@@ -46,9 +50,11 @@ fn one(module: &Module, statement: &Statement, values: &mut Values, out: &mut Ve
         .enumerate()
         .filter(|(_, is_possible)| **is_possible);
     if let (Some((only, _)), None) = (possible.next(), possible.next()) {
+        let first = out.len();
         for inner in blocks[only] {
             one(module, inner, values, out);
         }
+        hand_on(statement.docs(), &mut out[first..]);
         return;
     }
     let mut after = vec![];
@@ -86,11 +92,13 @@ fn with_blocks(
             let then = blocks.pop().flatten().unwrap_or_default();
             match then.is_empty() {
                 true => Statement::If {
+                    docs: statement.docs().to_vec(),
                     condition: not(condition),
                     then: last,
                     otherwise: then,
                 },
                 false => Statement::If {
+                    docs: statement.docs().to_vec(),
                     condition,
                     then,
                     otherwise: last,
@@ -101,6 +109,7 @@ fn with_blocks(
             let arms = arms.iter().zip(blocks);
             let arms = arms.filter_map(|((value, _), block)| Some((value.clone(), block?)));
             Statement::Case {
+                docs: statement.docs().to_vec(),
                 subject: shorter(module, subject, values),
                 arms: arms.collect(),
                 default: last,

@@ -226,6 +226,7 @@ pub(super) fn run(module: &Module, statements: &[Statement], values: &mut Values
             net,
             low_bit,
             value,
+            ..
         } = statement
         {
             let part = known(module, value, values);

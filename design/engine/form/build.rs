@@ -62,6 +62,7 @@ impl Builder<'_> {
                 net,
                 low_bit,
                 value,
+                ..
             } => {
                 let (net, width) = (*net, self.flat.nets[*net].width_bits);
                 let node = self.expr(value);
@@ -76,6 +77,7 @@ impl Builder<'_> {
                 condition,
                 then,
                 otherwise,
+                ..
             } => {
                 let condition = self.expr(condition);
                 let then = self.branch(then);
@@ -86,6 +88,7 @@ impl Builder<'_> {
                 subject,
                 arms,
                 default,
+                ..
             } => {
                 let subject = self.expr(subject);
                 let arms: Vec<_> = arms

@@ -4,7 +4,7 @@ use super::expression::{choice, is_condition};
 use super::{Added, ModulePrinter};
 use crate::elaborate::{Expr, ExprKind, NetId, Statement};
 use crate::printing::{constant_values, processes, reads_and_targets, INDENT};
-use crate::vhdl::text::{literal, subtype, wrapped, Context};
+use crate::vhdl::text::{comment, literal, subtype, wrapped, Context};
 use std::collections::BTreeSet;
 
 /// Where a list of signals goes on in the next line.
@@ -78,6 +78,7 @@ impl ModulePrinter<'_> {
                 net,
                 low_bit: 0,
                 value,
+                ..
             } = statement
             else {
                 return None;
@@ -89,7 +90,11 @@ impl ModulePrinter<'_> {
         }
         let mut out = String::new();
         for statement in statements {
-            if let Statement::Assign { net, value, .. } = statement {
+            if let Statement::Assign {
+                net, value, docs, ..
+            } = statement
+            {
+                out.push_str(&comment(docs, INDENT));
                 let name = self.reference(*net);
                 let value = match is_condition(value) {
                     true => format!("'1' when {} else '0'", self.condition(value)),
@@ -131,11 +136,13 @@ impl ModulePrinter<'_> {
 
     fn statement(&mut self, statement: &Statement, depth: usize) -> String {
         let pad = INDENT.repeat(depth);
-        match statement {
+        let docs = comment(statement.docs(), &pad);
+        let text = match statement {
             Statement::Assign {
                 net,
                 low_bit,
                 value,
+                ..
             } => {
                 let place = self.place(*net, *low_bit, value.width_bits);
                 let sign = if self.variables.contains_key(net) {
@@ -150,6 +157,7 @@ impl ModulePrinter<'_> {
                 condition,
                 then,
                 otherwise,
+                ..
             } => {
                 let condition = self.condition(condition);
                 let then = self.branch(then, depth + 1);
@@ -160,15 +168,17 @@ impl ModulePrinter<'_> {
                 subject,
                 arms,
                 default,
+                ..
             } => self.case(subject, arms, default, depth),
-        }
+        };
+        docs + &text
     }
 
     fn otherwise(&mut self, otherwise: &[Statement], depth: usize) -> String {
         let pad = INDENT.repeat(depth);
         match otherwise {
             [] => format!("{pad}end if;\n"),
-            [only @ Statement::If { .. }] => {
+            [only @ Statement::If { docs, .. }] if docs.is_empty() => {
                 let text = self.statement(only, depth);
                 format!("{pad}els{}", text.trim_start())
             }

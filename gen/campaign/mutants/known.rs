@@ -37,6 +37,7 @@ fn for_each_comparison(statements: &[Statement], note: &mut dyn FnMut(&Expr, &Ex
                 condition,
                 then,
                 otherwise,
+                ..
             } => {
                 in_expr(condition, note);
                 for_each_comparison(then, note);
@@ -46,6 +47,7 @@ fn for_each_comparison(statements: &[Statement], note: &mut dyn FnMut(&Expr, &Ex
                 subject,
                 arms,
                 default,
+                ..
             } => {
                 in_expr(subject, note);
                 for (value, inner) in arms {

@@ -234,7 +234,6 @@ impl Logic for CardCore {
 
     /// Outputs within the device, interrupts, recovery times.
     fn wire_direct(&mut self) {
-        // Outputs within the device.
         self.part_write.next = self.bank.begins.val() & self.front.write.val();
         for i in 0..self._directs {
             connect!(self.direct[i] <= self; clock = clk_i, reset = rst_i);

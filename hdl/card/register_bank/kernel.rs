@@ -80,7 +80,6 @@ impl Logic for RegisterBank {
             self.front.in_range.val() & !self.front.word_address.val().get_bits::<2>(9).any();
         self.low_address.next = self.front.word_address.val().get_bits::<9>(0);
 
-        // Configuration: the ring carries 3 of the 8 words that a block has room for.
         if !self.busy.val() {
             self.config_page.d.next = self.low_page.val()
                 & self.front.word_address.val().get_bit(8)
@@ -116,7 +115,6 @@ impl Logic for RegisterBank {
 
     /// The card's own words.
     fn show_card(&mut self) {
-        // The card's own words.
         self.card_page.next =
             self.low_page.val() & !self.front.word_address.val().get_bits::<5>(4).any();
         self.stream_selected.next =
@@ -197,7 +195,6 @@ impl Logic for RegisterBank {
 
     /// Results.
     fn show_results(&mut self) {
-        // Results.
         // Reading blocks a cycle late: the first byte is read later still.
         self.read_before.d.next = self.front.reading.val();
         self.show.next = !self.read_before.q.val();

@@ -256,7 +256,6 @@ impl Logic for Receiver {
 
     /// The word is aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
     fn align(&mut self) {
-        // Aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
         self.align_first.d.next = self.take_crc.q.val();
         self.aligned_at.next = 5.into();
         if self.shape.has_f2.val() {
