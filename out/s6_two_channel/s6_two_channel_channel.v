@@ -391,12 +391,16 @@ module s6_two_channel_channel (
             period = CALIBRATION_PERIOD_CYCLES;
         end
     end
+    // Which command the next frame has is settled before it begins, and stays until all has been told of it.
     assign command_now = settings_command_now;
     assign payload_bits = settings_position_bits_now;
     assign settings_frame_command = command_now;
+    // Outside of a command nothing is left to send, whatever a register says.
     assign sender_aborts = transaction_aborts | (!receiver_skipping & !transaction_start_supplement);
     assign receiver_level = filter_level;
+    // In fewer than four cycles additional data would begin before the position is taken.
     assign wanted_shape_command = command;
+    // A trigger takes positions only, with a request or without: another command's answer is none, and may change the encoder.
     assign transaction_is_known = wanted_shape_is_position;
 
     always @* begin
@@ -419,6 +423,7 @@ module s6_two_channel_channel (
             data_pin <= 1'b0;
             oe_pin <= 1'b0;
         end else begin
+            // The line, from registers.
             clk_pin <= clock_gen_endat_clk;
             data_pin <= data_pin_next;
             oe_pin <= oe_pin_next;

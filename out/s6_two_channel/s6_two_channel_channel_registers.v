@@ -189,6 +189,7 @@ module s6_two_channel_channel_registers (
 
     always @* begin
         waiting_next = waiting;
+        // A trigger that the channel does not take gives no result of its own.
         if (result_strobe) begin
             waiting_next = 1'b0;
         end
@@ -210,6 +211,7 @@ module s6_two_channel_channel_registers (
     assign taken = trigger & !busy;
     assign owes = waiting & !result_strobe;
     assign brought = waiting & result_strobe;
+    // A trigger that comes with a result is newer than it.
     assign behind_now = trigger | (behind & !result_strobe);
 
     always @* begin
@@ -234,6 +236,7 @@ module s6_two_channel_channel_registers (
     end
     assign word_0 = {flags[19:12], fresh, position_valid, 1'b0, cause, sequence_value};
     assign word_1 = position[31:0];
+    // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
     assign word_2 = {2'd0, position_width, 1'b0, position_has_f2, 1'b0, position_crc, position[47:32]};
     assign word_3 = first_fall_timestamp;
     assign word_4 = {flags[11:0], delay_cycles[9:0], crc_computed, crc_received};
@@ -399,6 +402,7 @@ module s6_two_channel_channel_registers (
     assign recovery_limit_cycles = config2[28:16];
 
     always @* begin
+        // With settings that nobody wrote nothing goes out: these are no commands.
         command = config0[29:24];
         if (ring_is_damaged | card_damaged) begin
             command = 6'd0;

@@ -45,6 +45,7 @@ module s6_two_channel_command_sender (
     reg    [3:0] cells_left_next;
     wire         _unused_ok = &{1'b0, start_supplement};
 
+    // Cells in falling order: 7 = the lead-in 0 at F2, 6..1 = the command, 8 and 0 = driver off.
     assign cells = {1'b0, command, 1'b0};
     assign cell_now = cells_left[2:0];
 

@@ -66,6 +66,7 @@ module s6_two_channel_crc5_check (
                 power_next = {1'b0, power[4:1]} ^ STEP;
             end
         end
+        // The CRC is sent inverted.
         if (crc_bit & !bit_value) begin
             received_next = received ^ power;
         end

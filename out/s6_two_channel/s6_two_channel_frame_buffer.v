@@ -128,11 +128,13 @@ module s6_two_channel_frame_buffer (
             read_at_next = (read_at + 13'd1) & MASK;
         end
     end
+    // Each frame begins anew.
     assign at_reset = !writing;
     assign crc_reset = !writing;
     assign run_reset = !writing | (byte_end & is_zero);
 
     always @* begin
+        // Which byte, and which of its 16 cycles.
         cycle_at_next = cycle_at + 4'd1;
         if (!writing) begin
             cycle_at_next = 4'd0;
@@ -150,6 +152,7 @@ module s6_two_channel_frame_buffer (
             end
         end
     end
+    // A bit of the CRC in each of the second eight cycles.
     assign bit_index = ~cycle_at[2:0];
     assign feedback = crc[15] ^ byte_now[bit_index];
 
@@ -162,6 +165,7 @@ module s6_two_channel_frame_buffer (
             end
         end
     end
+    // COBS: a zero becomes the place of the next code byte, and its distance goes to the last one.
     assign advance = start | (byte_end & !is_end & !is_past);
 
     always @* begin
@@ -216,6 +220,7 @@ module s6_two_channel_frame_buffer (
         end else begin
             writing <= writing_next;
             cycle_at <= cycle_at_next;
+            // The tail: 0, 1 = CRC, 2 = the zero that COBS puts at the end, 3 = the end of the frame, 4 = time for the counters.
             in_tail <= at[6:3] == TAIL_BLOCK;
             is_end <= in_tail & (&at[1:0]);
             is_past <= in_tail & at[2];
@@ -228,6 +233,7 @@ module s6_two_channel_frame_buffer (
             read_at <= read_at_next;
             used <= (start_at - read_at) & MASK;
             fits <= used <= MOST_USED;
+            // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after that.
             took <= take;
         end
     end

@@ -59,6 +59,7 @@ module s6_two_channel_half_period (
         end
         if (restart & began) begin
             count_next = 10'd3;
+            // A half of two cycles is over at once.
             hit_next = 1'b0;
         end
     end

@@ -44,6 +44,7 @@ module s6_two_channel_input_filter (
     assign sample = sync3;
 
     always @* begin
+        // One step of the filter, or two.
         limit = {1'b0, filter_cycles};
         middle = level_now;
         middle_different = different;

@@ -125,6 +125,7 @@ module s6_two_channel_line_delay (
         .left_cycles(half_left_cycles)
     );
 
+    // tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
     assign first_rise = rise & (acquire | !timing_armed);
     assign places = {1'b0, delay};
     assign delay_now = places[10:0];
@@ -141,11 +142,13 @@ module s6_two_channel_line_delay (
         end else if (parity_now ^ parity) begin
             wrong_next = 1'b1;
         end
+        // One from a register is not measured.
         if (acquired) begin
             wrong_next = 1'b0;
         end
     end
     assign first_center = acquired | (due & !cells_run & !acquire);
+    // With two system clock cycles in a bit one cell more begins before a burst is over.
     assign sample_now = sample_strobe;
     assign center_now = acquired | center_strobe;
     assign half_second = second_half;
@@ -157,12 +160,14 @@ module s6_two_channel_line_delay (
         since_rise_next = since_rise + 11'd1;
         if (first_rise) begin
             timing_armed_next = 1'b1;
+            // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles earlier.
             since_rise_next = 11'd3;
             if (acquire) begin
                 since_rise_next = 11'd1;
             end
         end
         delay_over_next = timing_armed & (since_rise == delay_now);
+        // The half period timer runs one cycle ahead: its ticks are registered before they are used.
         sample_strobe_next = half_tick & !second_half & cells_run;
         center_strobe_next = (half_tick & second_half) | (first_center & !acquired);
         if (half_tick & cells_run) begin
@@ -183,6 +188,8 @@ module s6_two_channel_line_delay (
     end
     assign half_restart = !cells_run | last_cell;
     assign half_began = acquired;
+    // The pulse of a cell, and how far its data edge is from the middle.
+    // Of the edges before an acquired start bit that which launched it is the only one that counts.
     assign pulse = acquired | (will_rise & (!acquire | cells_run));
     assign edge_now = edge_seen | data_edge;
 
@@ -216,6 +223,8 @@ module s6_two_channel_line_delay (
         edge_late_next = edge_late;
         edge_error_next = edge_error;
         edge_outside_next = edge_outside;
+        // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
+        // is as good as one that is seen with it: the limits of the bit are as far from both.
         if (center_now) begin
             center_seen_next = 1'b1;
         end
@@ -236,7 +245,9 @@ module s6_two_channel_line_delay (
             edge_outside_next = 1'b0;
         end
     end
+    // All cells of a burst have ended: the next rising edge begins a new one.
     assign over = !run | (drain & none_under_way);
+    // Places of the cells, and what was measured.
     assign sample = sample_now;
     assign center = center_now;
     assign edge_in_window = edge_now & !edge_outside;
@@ -275,12 +286,14 @@ module s6_two_channel_line_delay (
             center_seen <= center_seen_next;
             not_yet <= over | (acquire & !hunting);
             afresh <= over;
+            // The tracked delay goes where the start edge was.
             follow_now <= follow & (|edge_error);
             edge_seen <= edge_seen_next;
             edge_late <= edge_late_next;
             edge_error <= edge_error_next;
             edge_outside <= edge_outside_next;
             parity <= parity_next;
+            // The delay stands from frame to frame: it is guarded.
             moved <= follow_now | acquired;
             wrong <= wrong_next;
         end

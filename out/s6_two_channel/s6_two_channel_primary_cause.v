@@ -21,6 +21,7 @@ module s6_two_channel_primary_cause (
         if (flags[18]) begin
             cause = 5'd17;
         end
+        // CRC before F1 before F2: error bits of a spoilt frame mean nothing.
         if (flags[5]) begin
             cause = 5'd6;
         end

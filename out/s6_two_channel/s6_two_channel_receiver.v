@@ -202,15 +202,20 @@ module s6_two_channel_receiver (
     assign width = payload_bits;
 
     always @* begin
+        // What a cycle begins with.
         skip_step = sample;
         if (acquire) begin
             skip_step = rise;
         end
     end
     assign start_sample = (field == FIELD_START) & sample & level;
+    // Cells and pulses.
+    // Where a bit has few system clock cycles cells go on until the end has been seen.
     assign counts = sample & ((field != FIELD_DONE) | (|left[6:1]));
+    // Each cell has its pulse. How many cells there are before the start bit is not known: each of them is one pulse more.
     assign one_more = sample & (field == FIELD_START);
     assign one_less = pulse | (acquire & rise & (field == FIELD_SKIP));
+    // Where a bit enters: the smallest of 5, 20, 35 and 50 bits that holds F1, F2 and the position.
     assign in5 = width <= 6'd3;
     assign in20 = (width <= 6'd18) & !in5;
     assign in35 = (width <= 6'd33) & !in5 & !in20;
@@ -251,6 +256,8 @@ module s6_two_channel_receiver (
     assign is_taken = last_taken;
 
     always @* begin
+        // A frame, the next answer of a running clock, a supplement: what each begins with.
+        // Cells of the frame besides payload and additional data.
         cells_around = FIXED_CELLS;
         if (has_f2) begin
             cells_around = FIXED_CELLS + 7'd1;
@@ -282,12 +289,14 @@ module s6_two_channel_receiver (
         if (one_less & !one_more) begin
             to_send_next = to_send - 7'd1;
         end
+        // A third count, modulo 8, of the pulses that are on the cable.
         if (pulse & !counts) begin
             under_way_next = under_way + 3'd1;
         end
         if (counts & !pulse) begin
             under_way_next = under_way - 3'd1;
         end
+        // The parts of an answer, one after the other.
         case (field)
             FIELD_SKIP: begin
                 if (skip_step) begin
@@ -323,6 +332,7 @@ module s6_two_channel_receiver (
             FIELD_PAYLOAD: begin
                 if (sample) begin
                     covered_bit = 1'b1;
+                    // This bit, five of the CRC, and what comes behind.
                     if (left == 7'd7) begin
                         last_payload_next = 1'b1;
                         field_next = FIELD_CRC;
@@ -386,6 +396,7 @@ module s6_two_channel_receiver (
             to_send_next = {1'b0, payload_bits} + cells_around;
             word_next = 50'd0;
             under_way_next = 3'd0;
+            // Skipped cells take the counter to 0, where the covered bits start from.
             covered_d = SKIP_FROM;
             skip_rounds_next = 2'd0;
             f2_bit_next = 1'b1;
@@ -399,6 +410,7 @@ module s6_two_channel_receiver (
 
     always @* begin
         crc_bits_next = crc_bits;
+        // Both checks of the CRC.
         if (crc_bit) begin
             crc_bits_next = {crc_bits[3:0], level};
         end
@@ -406,6 +418,7 @@ module s6_two_channel_receiver (
     assign check_clear = start;
     assign serial_clear = start;
     assign serial_enable = covered_bit | crc_bit;
+    // How far the answer is.
     assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
     assign hunting = hunting_now;
     assign start_found = start_sample & edge_in_window;
@@ -470,14 +483,17 @@ module s6_two_channel_receiver (
             crc_calc <= crc_calc_next;
             take_crc <= last_payload;
             align <= align_next;
+            // The word is aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
             align_first <= take_crc;
             last_taken <= last_taken_next;
             done_now <= is_taken;
+            // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
             used <= all_sent & (left == 7'd1) & (under_way == 3'd1);
             ended <= all_sent & none_under_way & !(|under_way);
             parallel_equal <= check_is_ok;
             serial_good <= serial_residue_ok;
             refused <= start_sample & !edge_in_window;
+            // One cycle later than the sample: the whole word hangs on this enable.
             shift_now <= covered_bit;
             bit_now <= level;
             last_payload <= last_payload_next;

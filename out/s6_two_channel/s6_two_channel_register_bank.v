@@ -196,6 +196,7 @@ module s6_two_channel_register_bank (
             hold_next = ring_word2[0];
         end
     end
+    // What an access is stands from its begin to its end, whatever the front shows.
     assign busy = turning | ended;
 
     always @* begin
@@ -217,12 +218,15 @@ module s6_two_channel_register_bank (
     end
     assign begins = starts;
     assign address = held_address;
+    // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
+    // They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
     assign whole_turn = config_page;
     assign block_end = byte_at == 4'd11;
 
     always @* begin
         at_end = block_end & (block_at == LAST_BLOCK);
         if (!whole_turn) begin
+            // The first byte of a RAM word waits for the RAM.
             at_end = 1'b1;
         end
     end
@@ -253,6 +257,7 @@ module s6_two_channel_register_bank (
     assign ring_turn = turn;
     assign ring_home = !turn;
     assign done = done_now;
+    // Configuration: the ring carries 3 of the 8 words that a block has room for.
     assign low_page = in_range & !(|word_address[10:9]);
 
     always @* begin
@@ -273,6 +278,7 @@ module s6_two_channel_register_bank (
     end
     assign take_byte = passes;
     assign ring_out = head;
+    // The card's own words.
     assign card_page = low_page & !(|word_address[8:4]);
     assign stream_selected = card_page & (&word_address[3:2]);
 
@@ -324,6 +330,7 @@ module s6_two_channel_register_bank (
             end
         endcase
     end
+    // Strobes, and the settings of the card.
     assign strobe = starts & write & low_page;
 
     always @* begin
@@ -474,6 +481,7 @@ module s6_two_channel_register_bank (
             count_skip <= !low_page | (low_address != TRIGGER_COUNT_AT);
             count_held <= count_held_next;
             ring_byte <= ring_byte_next;
+            // The byte that is read.
             byte_value <= rom_byte | count_byte | ring_byte | channel_byte | part_byte;
             trigger_strobe <= strobe & (low_address == TRIGGER_NOW_AT) & write_data[0];
             calibrate_strobe <= calibrate_strobe_next;
@@ -481,6 +489,8 @@ module s6_two_channel_register_bank (
             active_period <= active_period_next;
             hold <= hold_next;
             blocked <= blocked_now;
+            // Results.
+            // Reading blocks a cycle late: the first byte is read later still.
             read_before <= reading;
             mixed <= mixed_now & !taken;
             one_gone <= one_gone_next;

@@ -130,11 +130,13 @@ module s6_two_channel_set_channel_number_2 (
     assign open = waiting & !result_strobe;
     assign owes = open;
     assign replaced = took & !waiting & result_strobe;
+    // No other result of another trigger gets in: what the channel does not have is 0.
     assign is_own = took & !open;
     assign position_taken_reset = take & !is_own;
     assign parity_taken_reset = take & !is_own;
     assign status_taken_reset = take & !is_own;
     assign status = {1'b0, flags[18:12], fresh, position_valid, 1'b0, cause};
+    // The polynomial has the factor x + 1: CRC and what it is of, F1 = 0, F2 = 1 and the position, have the same parity.
     assign parity = (^position_crc) ^ position_has_f2;
 
     always @* begin
@@ -151,7 +153,9 @@ module s6_two_channel_set_channel_number_2 (
             missing_taken_next = open;
         end
     end
+    // Told with the status byte; the bytes before it have gone out.
     assign upset_now_reset = block != NUMBER;
+    // A reset by deselection alone takes no logic.
     assign byte_now_reset = block != NUMBER;
 
     always @* begin

@@ -182,6 +182,8 @@ module s6_two_channel_snapshot (
         end
     end
     assign age_shown_reset = reset | unconfirmed | take_good;
+    // The guard. Its first look is at what has just been loaded: the position from where the CRC was checked, the time stamp from where its
+    // parity was, but for the last cycle.
     assign stamp_sum = ^stamp;
     assign parity_now = (^held) ^ stamp_sum ^ (^held_crc) ^ (^held_width) ^ held_f2;
     assign upset_now = is_upset & !take_good & valid;
@@ -321,8 +323,10 @@ module s6_two_channel_snapshot (
             earlier_parity <= earlier_parity_next;
             unconfirmed <= unconfirmed_next;
             parity <= parity_next;
+            // The time stamp waits for its position as long as a frame lasts: it is guarded, too.
             timed <= first_fall;
             moment_parity <= moment_parity_next;
+            // Of the cycle before: the sum of all its bits is too long a way to what loads.
             moment_sum <= ^moment;
             is_upset <= is_upset_next;
             valid <= valid_next;
@@ -331,6 +335,7 @@ module s6_two_channel_snapshot (
             moment <= moment_next;
             stamp <= stamp_next;
             age <= age_next;
+            // The age of the position before goes on until the new one is sure; a row of withdrawn ones must not look young.
             age_full <= &age;
             cause_held <= cause_held_next;
             flags_held <= flags_held_next;

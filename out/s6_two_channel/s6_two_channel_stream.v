@@ -229,10 +229,12 @@ module s6_two_channel_stream (
     assign take_set = take_now;
     assign head_byte_reset = |block;
     assign buffer_set_byte = head_byte | channel_byte;
+    // The host's words.
     assign reads = access & selected & !write;
 
     always @* begin
         state_held_next = state_held;
+        // The state is that of the moment when its first byte was read.
         if (reads & !(|lane)) begin
             state_held_next = {lost_all[7:0], buffer_waiting_bytes};
         end
@@ -301,9 +303,11 @@ module s6_two_channel_stream (
     assign bus_take = reads & (word == 2'd2) & bus_may;
     assign byte_read_reset = access & !reads;
     assign read_byte = byte_read;
+    // The other end. A frame goes one way from its first byte to its last.
     assign push = push_on;
     assign in_frame = pushing;
     assign push_valid = buffer_ready & (pushing | (push_on & !mid_frame & !flush));
+    // What a clear throws away, or is left of a frame that the host read half of.
     assign skip = buffer_ready & !pushing & (flush | (push_on & mid_frame));
     assign take = bus_take | push_take | skip;
     assign more = |push_byte;
@@ -320,6 +324,7 @@ module s6_two_channel_stream (
         if (push_take) begin
             pushing_next = more;
         end
+        // An upset: nothing is left of a frame, and answers would wait for its end for ever.
         if (pushing & !(|buffer_waiting_bytes)) begin
             pushing_next = 1'b0;
         end
@@ -344,6 +349,7 @@ module s6_two_channel_stream (
             collect <= collect_next;
             push_on <= push_on_next;
             open <= open_next;
+            // The set under way. The number of its trigger is there a cycle after the trigger.
             first <= trigger;
             sequence_value <= sequence_next;
             moment <= moment_next;

@@ -271,10 +271,13 @@ module s6_two_channel_transaction (
     );
 
     assign triggered = trigger;
+    // The position that a measuring frame has made possible.
     assign owed = once_more & owing;
     assign wanted = triggered | owed;
     assign endless = |(timer & FRAME_US);
+    // A frame that has vanished: a register was upset.
     assign vanished = (owing & !once_more) | under_way;
+    // Where the recovery time begins.
     assign in_tail = phase == PHASE_TAIL;
     assign in_recovery = phase == PHASE_RECOVERY;
     assign last_cell = in_tail & was_center;
@@ -305,9 +308,11 @@ module s6_two_channel_transaction (
         idle = 1'b0;
         answer_taken = 1'b0;
         found = 20'd0;
+        // The order of a frame.
         running = 1'b0;
         case (phase)
             PHASE_NOT_READY: begin
+                // DATA is not LOW yet, or not for long enough.
                 limit = READY_LOW_CYCLES;
                 timer_clear = level;
                 idle = level;
@@ -316,6 +321,7 @@ module s6_two_channel_transaction (
                 end
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
+                    // Longer than an edge rings.
                     plugged = high_at_tick & tick_us;
                     if (triggered | owed) begin
                         found = DATA_NOT_LOW;
@@ -328,7 +334,9 @@ module s6_two_channel_transaction (
                 end
             end
             PHASE_READY: begin
+                // A frame may begin.
                 timer_clear = 1'b1;
+                // A trigger just behind one that was refused is lost: the result that is being told would be taken for its own.
                 idle = !verdict_is_telling;
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
@@ -355,6 +363,7 @@ module s6_two_channel_transaction (
                 end
             end
             PHASE_FIRST_LOW: begin
+                // The first low phase is longer than the others.
                 running = 1'b1;
                 limit = {5'd0, first_low_extra_cycles};
                 if (timer_hit) begin
@@ -363,13 +372,16 @@ module s6_two_channel_transaction (
                 end
             end
             PHASE_FRAME: begin
+                // Command and answer.
                 running = 1'b1;
                 in_us = 1'b1;
                 timer_clear = (hunting ^ was_hunting) | finished;
+                // A receiver that has lost its place.
                 if (endless & !hunting) begin
                     found = TAIL_LOW;
                     give_up = 1'b1;
                 end
+                // In the first cycle of the hunt the timer is still that of what was before.
                 if (timer_hit & hunting & was_hunting) begin
                     found = NO_START_BIT;
                     give_up = 1'b1;
@@ -386,7 +398,9 @@ module s6_two_channel_transaction (
                 end
             end
             PHASE_PARK: begin
+                // CLOCK is LOW before the supplement.
                 running = 1'b1;
+                // No bit follows the answer here.
                 proof = verdict_taken;
                 limit = PARK_CYCLES;
                 if (timer_hit) begin
@@ -401,19 +415,23 @@ module s6_two_channel_transaction (
                 give_up = 1'b1;
             end
             PHASE_TAIL: begin
+                // The last edges of the clock.
                 running = 1'b1;
                 in_us = 1'b1;
                 if (endless) begin
                     found = TAIL_LOW;
                     give_up = 1'b1;
                 end
+                // A cycle late, for the middle may come before the last bit has been worked upon.
                 if (was_center) begin
                     phase_next = PHASE_RECOVERY;
+                    // From here on the full clock's times again: a short tm ends before half a slow period does.
                     acquiring_next = 1'b0;
                     slow_now_next = 1'b0;
                 end
             end
             PHASE_RECOVERY: begin
+                // DATA falls when the recovery time is over.
                 running = !tail_sampled;
                 limit = {3'd0, recovery_limit_cycles};
                 if (sample) begin
@@ -429,16 +447,19 @@ module s6_two_channel_transaction (
                     found = NOT_FALLING;
                     give_up = 1'b1;
                 end
+                // Each cell had its pulse, but for one whose count was upset.
                 if (sample & !tail_sampled & !all_used) begin
                     found = UPSET;
                     give_up = 1'b1;
                 end
+                // The encoder still sends, or has stopped early: its frame has another length than ours.
                 if (sample & !tail_sampled & !level) begin
                     found = TAIL_LOW;
                     give_up = 1'b1;
                 end
             end
             PHASE_ABORT: begin
+                // The line is left alone; then it is probed, where that is known.
                 in_us = 1'b1;
                 limit = ABORT_US;
                 if (timer_hit) begin
@@ -450,6 +471,7 @@ module s6_two_channel_transaction (
                 give_up = 1'b1;
             end
         endcase
+        // What is given up has that as its one result.
         if (give_up | aborts) begin
             proof = 1'b0;
         end
@@ -460,12 +482,15 @@ module s6_two_channel_transaction (
             answered_next = 1'b0;
             under_way_next = 1'b0;
         end
+        // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
         if (aborts) begin
             phase_next = PHASE_ABORT;
             timer_clear = 1'b1;
             accept = 1'b0;
             refuse = 1'b0;
+            // A trigger just behind the one that was refused is lost, not forgotten.
             idle = 1'b0;
+            // DATA LOW behind a frame of another length does not end it once more.
             normal_end = 1'b0;
             answered_next = 1'b0;
             under_way_next = 1'b0;
@@ -473,8 +498,10 @@ module s6_two_channel_transaction (
         if (timer_step) begin
             timer_next = timer + 16'd1;
         end
+        // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
         timer_hit_next = (timer >= timer_limit) & !cleared;
         cleared_next = timer_clear | accept | rise_back;
+        // With the cycles that pass before the timer sees the beginning of its span; a frame that is given up has another one.
         if (rise_back) begin
             timer_next = 16'd2;
         end
@@ -485,6 +512,7 @@ module s6_two_channel_transaction (
         if (accept) begin
             timer_next = 16'd2;
         end
+        // What else becomes of that frame is the trigger's result, not something that comes behind it.
         if (verdict_once_more) begin
             once_more_next = 1'b1;
             answered_next = 1'b0;
@@ -492,6 +520,7 @@ module s6_two_channel_transaction (
         if (accept | refuse | aborts | !owing) begin
             once_more_next = 1'b0;
         end
+        // What a frame begins with.
         if (accept) begin
             measuring_next = !known;
             under_way_next = 1'b1;
@@ -500,6 +529,7 @@ module s6_two_channel_transaction (
             slow_now_next = !known;
             tail_sampled_next = 1'b0;
         end
+        // A reset may have come in the middle of a frame. After power-up nobody has begun one.
         if (reset) begin
             phase_next = PHASE_ABORT;
         end
@@ -515,24 +545,31 @@ module s6_two_channel_transaction (
         end
     end
     assign verdict_is_late = answered;
+    // Triggers that are lost, and the result that is owed.
     assign lost = trigger & ((!accept & !idle) | owing);
 
     always @* begin
+        // Whether the delay has to be measured again.
         high_at_tick_next = high_at_tick & level;
         if (tick_us) begin
             high_at_tick_next = level;
         end
     end
+    // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
     assign afresh = calibrate | plugged | delay_upset;
 
     always @* begin
         is_calibrated_next = is_calibrated;
+        // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
         if (aborts) begin
             is_calibrated_next = 1'b0;
         end
+        // Whether the propagation delay is known.
+        // The mean over several frames, if it is taken; the last of them makes the delay known.
         if (verdict_is_received & measuring) begin
             is_calibrated_next = 1'b1;
         end
+        // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
         if (verdict_is_doubtful) begin
             is_calibrated_next = 1'b0;
         end
@@ -542,10 +579,13 @@ module s6_two_channel_transaction (
     end
     assign run = run_now;
     assign start = start_now;
+    // Taking the start bit ends its cell; started comes when the comparison knows that.
     assign sent = last_edge_all_sent & started;
     assign hold_low = hold;
     assign drain = last_edge_stalled;
+    // The high phase of the last pulse may last two cycles only.
     assign stop = stop_now | sent;
+    // What is told.
     assign acquire = acquiring;
     assign slow = slow_now;
     assign busy = !idle | once_more;
@@ -590,6 +630,7 @@ module s6_two_channel_transaction (
             timer_step <= !in_us | tick_us;
             hold <= (phase == PHASE_FIRST_LOW) | last_edge_holds;
             start_now <= accept;
+            // The clock: when it runs, stands LOW, and ends.
             run_now <= running;
             extra <= |first_low_extra_cycles;
             stop_now <= !running | aborts;
@@ -600,6 +641,7 @@ module s6_two_channel_transaction (
             recovery <= recovery_next;
             supplement_now <= supplement_now_next;
             answered <= answered_next;
+            // Time-outs, each counted from the beginning of its span.
             was_hunting <= hunting;
             was_center <= center;
             cleared <= cleared_next;

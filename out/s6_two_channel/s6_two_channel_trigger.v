@@ -62,6 +62,7 @@ module s6_two_channel_trigger (
     always @* begin
         timer_hit_low_next = timer[11:0] == period_cycles[11:0];
         timer_next = timer + 24'd1;
+        // Restarts while disabled: the first period is a whole one.
         if (timer_hit | !sources[1]) begin
             timer_next = TIMER_FIRST;
             timer_hit_low_next = 1'b0;

@@ -169,6 +169,7 @@ module s6_two_channel_uart_bridge (
 
     always @* begin
         write_busy_next = write_busy;
+        // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
         if (access_now & writing) begin
             write_busy_next = 1'b1;
         end
@@ -188,6 +189,7 @@ module s6_two_channel_uart_bridge (
             expired_next = 1'b0;
         end
     end
+    // A frame that has begun goes first; none begins while an answer is due.
     assign from_stream = in_frame | (state != BRIDGE_STATE_READ);
 
     always @* begin
@@ -206,13 +208,16 @@ module s6_two_channel_uart_bridge (
 
     always @* begin
         byte_ready_next = byte_ready;
+        // What ends a command before its time.
         if (done & (state == BRIDGE_STATE_READ)) begin
             byte_ready_next = 1'b1;
         end
+        // What is left of an answer that was given up is not the beginning of the next one.
         if (answer_sent | (state != BRIDGE_STATE_READ)) begin
             byte_ready_next = 1'b0;
         end
     end
+    // What a cycle begins with.
     assign last_lane = &byte_lane;
     assign high_bits = |receiver_data;
     assign next_address = {1'b0, address} + 12'd1;
@@ -230,6 +235,7 @@ module s6_two_channel_uart_bridge (
         if (transmitter_accept & !from_stream) begin
             marker_next = 1'b0;
         end
+        // The first answer after the last frame has its mark, too: so the host knows it from a frame.
         if (push) begin
             marked_next = 1'b1;
         end
@@ -238,6 +244,7 @@ module s6_two_channel_uart_bridge (
         access_next_next = 1'b0;
         next_lane = 1'b0;
         stop_timer_next = receiver_strobe;
+        // The order of a command.
         case (state)
             BRIDGE_STATE_COMMAND: begin
                 stop_timer_next = 1'b1;
@@ -296,6 +303,7 @@ module s6_two_channel_uart_bridge (
                 end
             end
             BRIDGE_STATE_READ: begin
+                // An answer that stands still would stand for ever: a byte of it that is lost in here never comes again.
                 stop_timer_next = transmitter_accept;
                 if (sent) begin
                     next_lane = 1'b1;
@@ -314,6 +322,7 @@ module s6_two_channel_uart_bridge (
                 state_next = BRIDGE_STATE_DISCARD;
             end
         endcase
+        // Bytes and words.
         if (next_lane) begin
             byte_lane_next = byte_lane + 2'd1;
         end
@@ -326,6 +335,8 @@ module s6_two_channel_uart_bridge (
                 end
             end
         end
+        // The address. That of a written word stays until its access has ended.
+        // A written word keeps its address until its access has ended.
         if (done & writing) begin
             step_address_next = !fixed;
         end
@@ -380,6 +391,7 @@ module s6_two_channel_uart_bridge (
             data_next = {data[23:0], next_byte};
         end
     end
+    // The access.
     assign word_address = address;
     assign in_range = !out_of_range;
     assign lane = byte_lane;
@@ -428,6 +440,7 @@ module s6_two_channel_uart_bridge (
             write_busy <= write_busy_next;
             sent <= answer_sent;
             word_end <= word_end_next;
+            // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
             last_word <= words_left == 8'd1;
             no_word <= !(|words_left);
             step_address <= step_address_next;

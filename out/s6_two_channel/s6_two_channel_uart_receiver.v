@@ -84,6 +84,7 @@ module s6_two_channel_uart_receiver (
         if (!active) begin
             shift_next = MARKER;
             sample_next = 1'b0;
+            // An edge, not a level: a line held low is not a row of start bits.
             active_next = previous & !sync1;
             in_start_bit_next = 1'b1;
         end

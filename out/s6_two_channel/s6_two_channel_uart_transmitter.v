@@ -31,6 +31,7 @@ module s6_two_channel_uart_transmitter (
     reg    [9:0] shift_next;
     reg          empty; initial empty = 1'b1;
 
+    // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
     assign hit = count == LAST_COUNT;
 
     always @* begin
@@ -63,6 +64,7 @@ module s6_two_channel_uart_transmitter (
             count <= count_next;
             bit_end <= hit;
             shift <= shift_next;
+            // Only the stop bit is left, and it stays until there is something to send.
             empty <= !(|shift[9:1]);
         end
     end

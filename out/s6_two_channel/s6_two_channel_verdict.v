@@ -159,9 +159,11 @@ module s6_two_channel_verdict (
                 found_all = found_all | PARALLEL_WRONG;
             end
         end
+        // A frame is not given up for nothing: the state that says so was upset.
         if (upset | (gave_up_now & !(|seen))) begin
             found_all = found_all | STORED_UPSET;
         end
+        // That is for the result to say.
         if (overrun & !measured) begin
             found_all = found_all | TRIGGER_OVERRUN;
         end
@@ -215,6 +217,8 @@ module s6_two_channel_verdict (
             lost_now <= 1'b0;
             flags_now <= 20'd0;
         end else begin
+            // The frame's bits stay where they are until the verdict: an upset of one of them shows in its CRC.
+            // Synthesis does not see by itself that some flags are never set.
             seen <= found & POSSIBLE;
             taken_now <= answer_taken;
             gave_up_now <= give_up & !gave_up_now;
@@ -230,6 +234,7 @@ module s6_two_channel_verdict (
             withdraw_now <= gave_up_late;
             confirm_now <= ended;
             late_now <= gave_up_late;
+            // over comes with cause and flags of whatever ended the frame.
             over_now <= ended | gave_up_now | refused;
             lost_now <= lost;
             flags_now <= flags_now_next;

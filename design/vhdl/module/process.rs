@@ -30,7 +30,11 @@ impl ModulePrinter<'_> {
                 let value = self.known(*value, width_bits);
                 format!("{INDENT}{} <= {value};\n", self.reference(*net))
             };
-            return values.iter().map(line).collect();
+            let docs = match statements {
+                [one] => comment(one.docs(), INDENT),
+                _ => String::new(),
+            };
+            return values.iter().map(line).fold(docs, |all, line| all + &line);
         }
         if let Some(lines) = self.concurrent(statements, &reads) {
             return lines;
