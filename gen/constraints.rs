@@ -13,6 +13,7 @@ use crate::language::Language;
 use crate::template;
 use crate::testbench::RESET_CYCLES;
 use crate::wiring;
+use crate::zynq;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::service::program::CLEAR_CYCLES;
 use endat_hdl::endat::timing::ABORT_US;
@@ -170,6 +171,7 @@ fn without_board(project: &Project, is_vhdl: bool) -> Result<Vec<Artifact>, GenE
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
         bus => project.bus.name(),
+        zynq => zynq::base(project.bus, project.base_address).is_some(),
         internal => project.bus.is_internal(),
         bare => project.bus == HostBus::Bare,
         system_hz => project.card.system_hz,

@@ -1,5 +1,5 @@
 //! What integrators expect beside the sources: FuseSoC core, timing constraints, Vivado packaging, LiteX module,
-//! Amaranth component, black box of SpinalHDL, component of Platform Designer, instantiation template, C example.
+//! Amaranth component, black box of SpinalHDL, component of Platform Designer, block design for Zynq, instantiation template, C example.
 
 mod interface;
 
@@ -11,6 +11,7 @@ use crate::error::GenError;
 use crate::language::Language;
 use crate::template::render;
 use crate::testbench::RESET_CYCLES;
+use crate::zynq;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
 use endat_sim::decimal;
@@ -176,6 +177,8 @@ pub struct Core<'a> {
     initial_values: bool,
     /// It asks for a processor's attention.
     has_interrupt: bool,
+    /// Where a system has its registers; 0 if nobody has said so.
+    base_address: u32,
     /// The language of its files.
     pub language: Language,
     /// What the templates of a card's own files need besides.
@@ -216,11 +219,11 @@ impl<'a> Core<'a> {
             bus: project.bus,
             initial_values: project.card.initial_values,
             has_interrupt: project.card.outputs.interrupt,
+            base_address: project.base_address,
             language,
             card: context! {
                 channels,
                 board => Value::from(Serde(target)),
-                base_address => project.base_address,
             },
         })
     }
@@ -242,8 +245,9 @@ impl<'a> Core<'a> {
             bus: HostBus::Parallel,
             initial_values: receiver.initial_values,
             has_interrupt: false,
+            base_address: 0,
             language,
-            card: context! { board => (), base_address => 0 },
+            card: context! { board => () },
         }
     }
 
@@ -293,11 +297,26 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
     let is_in_platform_designer = bus
         .as_ref()
         .is_some_and(|b| !b.platform_designer.is_empty());
+    let zynq = match zynq::base(core.bus, core.base_address) {
+        Some(base) => {
+            let is_wired = |name: &str| {
+                clock.as_deref() == Some(name)
+                    || reset.is_some_and(|port| port.name == name)
+                    || interrupt.is_some_and(|port| port.name == name)
+                    || bus.as_ref().is_some_and(|bus| bus.has(name))
+            };
+            let names = ports.iter().map(|port| port.name.as_str());
+            Some(zynq::of(names.filter(|name| !is_wired(name)), base)?)
+        }
+        None => None,
+    };
     let has_wrapper = bus.as_ref().is_some_and(|b| !b.unused.is_empty());
     let wrapper = format!("{}{WRAPPER}", core.name);
     let context = context! {
         unused => Value::from(Serde(bus.as_ref().map_or(&[][..], |b| &b.unused))),
         wrapper => wrapper.as_str(),
+        zynq => Value::from(Serde(&zynq)),
+        base_address => core.base_address,
         name => core.name,
         scala_class => scala_class_name(core.name),
         class => class_name(core.name),
@@ -332,7 +351,8 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
     let wanted = TEMPLATES
         .iter()
         .chain((core.bus == HostBus::Uart).then_some(&EXAMPLE))
-        .chain(is_in_platform_designer.then_some(&PLATFORM_DESIGNER));
+        .chain(is_in_platform_designer.then_some(&PLATFORM_DESIGNER))
+        .chain(zynq.is_some().then_some(&zynq::SCRIPT));
     let is_verilog_only = |end: &str| end == "_instance.vh";
     let wrapping = match core.language {
         Language::Verilog => WRAPPER_VERILOG,

@@ -39,6 +39,7 @@ pub mod tools;
 pub mod vhdl;
 pub mod virtual_card;
 pub mod wiring;
+mod zynq;
 
 use artifact::Artifact;
 use config::Project;

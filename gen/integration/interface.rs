@@ -63,6 +63,13 @@ pub struct Interface {
     size_bytes: u64,
 }
 
+impl Interface {
+    /// Whether a port of the core is one of its signals.
+    pub fn has(&self, port: &str) -> bool {
+        self.signals.iter().any(|signal| signal.port == port)
+    }
+}
+
 /// The interface of a card with this bus; `None` where no tool connects it as one.
 pub fn of(bus: HostBus, ports: &[Port]) -> Option<Interface> {
     let (name, vivado, litex_module) = match bus {
