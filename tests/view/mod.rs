@@ -197,10 +197,15 @@ fn a_page_has_positions_plots_registers_parameters_and_recordings() {
         "{word}"
     );
     for (method, path, status, text) in [
-        ("GET", "/api/plot?from=x", 400, "from = \"x\""),
+        ("GET", "/api/plot?from=x", 400, "from = x: is not a number"),
         ("GET", "/api/plot?from=2&to=1", 400, "is before"),
         ("GET", "/api/plot?buckets=1e9", 400, "outside"),
-        ("GET", "/api/plot?traces=nothing", 400, "none of that name"),
+        (
+            "GET",
+            "/api/plot?traces=nothing",
+            400,
+            "there are position0",
+        ),
         (
             "GET",
             "/api/register?name=result9.status",
@@ -211,14 +216,27 @@ fn a_page_has_positions_plots_registers_parameters_and_recordings() {
             "GET",
             "/api/register?name=card.stream_data",
             400,
-            "takes something away",
+            "takes a byte of the stream away",
         ),
         ("GET", "/api/margin.svg?channel=0", 400, "no part `margin`"),
         ("POST", "/api/parameter?channel=2", 400, "channel = 2"),
         ("POST", "/api/parameter?area=256", 400, "area = 256"),
         // What does something is not done for a picture of another page.
-        ("GET", "/api/parameter?channel=0", 405, "GET /api/parameter"),
+        (
+            "GET",
+            "/api/parameter?channel=0",
+            405,
+            "request = GET /api/parameter: is asked for with POST",
+        ),
         ("GET", "/api/record", 405, "GET /api/record"),
+        ("GET", "/api/nwo", 405, "did you mean /api/now?"),
+        (
+            "GET",
+            "/api/margin.svg?channel=2",
+            400,
+            "channel = 2: outside 0..1",
+        ),
+        ("POST", "/api/inject?fault=unplug", 405, "view --rehearse"),
     ] {
         let told = view.ask(method, path);
         assert!(
@@ -226,15 +244,41 @@ fn a_page_has_positions_plots_registers_parameters_and_recordings() {
             "{path}: {told:?}"
         );
     }
+    let icon = view.with(
+        "GET",
+        "/favicon.ico",
+        &format!("Host: {}\r\n", view.address),
+    );
+    assert!(icon.0 == 200 && icon.1.starts_with("<svg"), "{icon:?}");
     let (_, begun) = view.ask("POST", "/api/record?path=/tmp/elsewhere.csv");
     let path = view.dir.0.join(begun["path"].as_str().unwrap());
     assert!(path.starts_with(view.dir.0.join("recordings")), "{begun}");
-    assert_eq!(view.ask("POST", "/api/record").0, 409);
+    let second = view.ask("POST", "/api/record");
+    assert!(
+        second.0 == 409 && is_text(&second.1, "stop it before"),
+        "{second:?}"
+    );
     view.until("rows in the file", |now| {
         now["recording"]["rows"].as_u64() > Some(50)
     });
     assert_eq!(view.ask("POST", "/api/stop").1["path"], Value::Null);
     assert!(path.is_file() && recorded(&view).len() > 50);
+}
+
+/// Catches an encoder of T-format of which the page tells nothing, where `id` does.
+#[test]
+fn a_page_has_what_a_t_format_encoder_tells_of_itself() {
+    let view = View::local("view-t-format", "virtual:mixed_protocols");
+    let card = view.get("/api/card");
+    let channels = card["channels"].as_array().unwrap();
+    let mut of_t_format = channels.iter().filter(|c| c["protocol"] == "T-format");
+    let plate = of_t_format.next().unwrap()["plate"].as_str().unwrap();
+    assert!(
+        plate.contains("(ENID)") && plate.contains("status, alarm     0x00, 0x00"),
+        "{plate}"
+    );
+    let of_endat = channels.iter().find(|c| c["protocol"] == "EnDat").unwrap();
+    assert_ne!(of_endat["plate"], plate);
 }
 
 #[cfg(unix)]

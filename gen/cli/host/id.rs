@@ -95,21 +95,23 @@ fn as_text(identity: &Identity, encoders: &[Encoder]) -> String {
                 let _ = write!(text, "\nencoder {channel}\n{plate}");
             }
             Encoder::TFormat(reply) => {
-                let told = match reply {
-                    Ok(state) => format!(
-                        "kind              0x{:02X} (ENID)\n  status, alarm     0x{:02X}, 0x{:02X}",
-                        state.encoder_id, state.status, state.alarm
-                    ),
-                    Err(why) => format!("does not tell     {why}"),
-                };
-                let _ = writeln!(
-                    text,
-                    "\nencoder {channel}\n  type              T-format, which has no name plate\n  {told}"
-                );
+                let _ = write!(text, "\nencoder {channel}\n{}", t_format_text(reply));
             }
         }
     }
     text
+}
+
+/// What a T-format encoder tells of itself, in the form of a name plate.
+pub fn t_format_text(reply: &Result<TFormatState, String>) -> String {
+    let told = match reply {
+        Ok(state) => format!(
+            "kind              0x{:02X} (ENID)\n  status, alarm     0x{:02X}, 0x{:02X}",
+            state.encoder_id, state.status, state.alarm
+        ),
+        Err(why) => format!("does not tell     {why}"),
+    };
+    format!("  type              T-format, which has no name plate\n  {told}\n")
 }
 
 /// Name of a step.

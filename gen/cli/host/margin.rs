@@ -38,8 +38,8 @@ const BINS: usize = 32;
 /// Longest wait for a frame.
 const WAIT: Duration = Duration::from_secs(20);
 
-/// Refuses a channel whose margin the card does not measure.
-pub fn needs(card: &AnyCard, channel: usize) -> Result<(), HostError> {
+/// Refuses a channel whose margin the card does not measure; `what` is how the user named it.
+pub fn needs(what: &str, card: &AnyCard, channel: usize) -> Result<(), HostError> {
     let why = match channel < card.identity().channels {
         true if !card.identity().is_t_format(channel) => None,
         true => Some("speaks T-format"),
@@ -47,7 +47,7 @@ pub fn needs(card: &AnyCard, channel: usize) -> Result<(), HostError> {
     };
     if let Some(why) = why {
         return Err(HostError::Name(format!(
-            "--channel = {channel}: {why}; the margin is measured on EnDat channels, give one of those"
+            "{what} = {channel}: {why}; the margin is measured on EnDat channels, give one of those"
         )));
     }
     if !card.identity().has(Part::Margin) {
@@ -99,7 +99,7 @@ pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
     let frames = frames.map(|n| n as u32);
     let mut card = arguments.port.open()?;
     let channel = channel(&card, arguments.channel.as_deref())?;
-    needs(&card, channel).map_err(told)?;
+    needs("--channel", &card, channel).map_err(told)?;
     let at = |register: &str| {
         Place::named(&format!("line{channel}.{register}"), channel + 1).map_err(told)
     };

@@ -1,16 +1,17 @@
 //! What a page asks, and what it is answered.
 
 use super::super::reg;
-use super::super::{id::plate_text, inject, margin};
+use super::super::{id, inject, margin};
 use super::collect::{call, Shared};
 use super::guard::Guard;
 use super::history::names;
 use super::http::{Request, Response};
-use crate::error::GenError;
+use crate::error::{shown, GenError};
+use crate::number;
 use crate::virtual_card::FAULTS;
 use endat_host::feed::NO_CAUSES;
 use endat_host::registers::Place;
-use endat_host::{causes, HostError};
+use endat_host::{causes, did_you_mean, HostError};
 use endat_sim::diagram::edges_svg;
 use serde_json::{json, Value};
 use std::path::PathBuf;
@@ -18,7 +19,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// The page.
-const FILES: [(&str, &str, &str); 3] = [
+const FILES: [(&str, &str, &str); 4] = [
     (
         "/",
         "text/html; charset=utf-8",
@@ -34,11 +35,51 @@ const FILES: [(&str, &str, &str); 3] = [
         "text/css; charset=utf-8",
         include_str!("page/view.css"),
     ),
+    // Browsers ask for it whether a page names one or not, and complain where there is none.
+    (
+        "/favicon.ico",
+        "image/svg+xml",
+        include_str!("page/icon.svg"),
+    ),
+];
+
+/// What can be asked for.
+#[derive(Clone, Copy)]
+enum Call {
+    Card,
+    Now,
+    Plot,
+    Registers,
+    Register,
+    Margin,
+    Parameter,
+    Record,
+    Stop,
+    Inject,
+}
+
+/// Makes a fault.
+const INJECT: &str = "/api/inject";
+
+/// What does something is a POST: no link and no picture of another page can ask for it.
+const CALLS: [(&str, &str, Call); 10] = [
+    ("GET", "/api/card", Call::Card),
+    ("GET", "/api/now", Call::Now),
+    ("GET", "/api/plot", Call::Plot),
+    ("GET", "/api/registers", Call::Registers),
+    ("GET", "/api/register", Call::Register),
+    ("GET", "/api/margin.svg", Call::Margin),
+    ("POST", "/api/parameter", Call::Parameter),
+    ("POST", "/api/record", Call::Record),
+    ("POST", "/api/stop", Call::Stop),
+    ("POST", INJECT, Call::Inject),
 ];
 /// Buckets of a plot.
 const BUCKETS_MAX: f64 = 4_000.0;
 /// Unless a page asks for another number.
 const BUCKETS: f64 = 800.0;
+/// No card runs for so long.
+const SECONDS_MAX: f64 = 1e9;
 
 /// A read of this register takes a byte of the stream away, which is a row of the page.
 const TAKES_AWAY: &str = "stream_data";
@@ -83,21 +124,27 @@ fn bad(text: impl Into<String>) -> Refusal {
 }
 
 /// A number of the query; the default if it is not there.
-fn number(request: &Request, name: &str, default: Option<f64>) -> Result<f64, Refusal> {
-    match (request.query.get(name), default) {
-        (None, Some(default)) => Ok(default),
-        (None, None) => Err(bad(format!("{name}: is missing; give a number"))),
-        (Some(text), _) => {
-            let number = text.parse().ok().filter(|n: &f64| n.is_finite());
-            number.ok_or_else(|| bad(format!("{name} = {text:?}: is no number")))
-        }
+fn decimal(request: &Request, name: &str, usual: f64, range: [f64; 2]) -> Result<f64, Refusal> {
+    let [low, high] = range;
+    match request.query.get(name) {
+        None => Ok(usual),
+        Some(text) => Ok(number::decimal(name, text, low..=high)?),
     }
 }
 
 /// A whole number within bounds, decimal or as `0xA1`.
 fn whole(request: &Request, name: &str, most: u64) -> Result<u64, Refusal> {
     let text = request.query.get(name).map(String::as_str).unwrap_or("0");
-    Ok(crate::number::number(name, text, 0..=most)?)
+    Ok(number::number(name, text, 0..=most)?)
+}
+
+/// An answer as JSON.
+fn told(result: Result<Value, Refusal>) -> Response {
+    let (status, value) = match result {
+        Ok(value) => (200, value),
+        Err(Refusal(status, text)) => (status, json!({ "error": text })),
+    };
+    Response::new(status, "application/json", value.to_string())
 }
 
 impl Api {
@@ -110,35 +157,69 @@ impl Api {
         if let (Some((_, kind, text)), "GET") = (file, request.method.as_str()) {
             return Response::new(200, kind, *text);
         }
-        let told = match (request.method.as_str(), request.path.as_str()) {
-            ("GET", "/api/card") => Ok(self.card()),
-            ("GET", "/api/now") => Ok(self.now()),
-            ("GET", "/api/plot") => self.plot(request),
-            ("GET", "/api/registers") => self.registers(),
-            ("GET", "/api/register") => self.register(request),
-            ("GET", "/api/margin.svg") => match self.margin(request) {
+        let Some(call) = self.call(request) else {
+            return match request.path.starts_with("/api/") {
+                true => told(Err(self.no_call(request))),
+                false => Response::text(
+                    404,
+                    format!(
+                        "path = {}: there is nothing here; the page is at /\n",
+                        shown(&request.path)
+                    ),
+                ),
+            };
+        };
+        told(match call {
+            Call::Card => Ok(self.card()),
+            Call::Now => Ok(self.now()),
+            Call::Plot => self.plot(request),
+            Call::Registers => self.registers(),
+            Call::Register => self.register(request),
+            Call::Margin => match self.margin(request) {
                 Ok(svg) => return Response::new(200, "image/svg+xml", svg),
                 Err(refusal) => Err(refusal),
             },
-            // These do something: no link and no picture of another page can ask for them.
-            ("POST", "/api/parameter") => self.parameter(request),
-            ("POST", "/api/record") => self.record(true),
-            ("POST", "/api/stop") => self.record(false),
-            ("POST", "/api/inject") if self.rehearses => self.inject(request),
-            (_, path) if path.starts_with("/api/") => Err(Refusal(
-                405,
-                format!(
-                    "{} {path}: is nothing that this server does",
-                    request.method
-                ),
-            )),
-            _ => return Response::text(404, "there is nothing here\n"),
+            Call::Parameter => self.parameter(request),
+            Call::Record => self.record(true),
+            Call::Stop => self.record(false),
+            Call::Inject => self.inject(request),
+        })
+    }
+
+    /// What this server does for pages: faults only where the card is known to be a virtual one.
+    fn calls(&self) -> impl Iterator<Item = &'static (&'static str, &'static str, Call)> + '_ {
+        CALLS
+            .iter()
+            .filter(|(.., call)| self.rehearses || !matches!(call, Call::Inject))
+    }
+
+    fn call(&self, request: &Request) -> Option<Call> {
+        let asked = (request.method.as_str(), request.path.as_str());
+        let mut calls = self.calls();
+        let found = calls.find(|(method, path, _)| (*method, *path) == asked);
+        found.map(|(.., call)| *call)
+    }
+
+    /// Why a request is none of the calls.
+    fn no_call(&self, request: &Request) -> Refusal {
+        let path = request.path.as_str();
+        let mut calls = self.calls();
+        let remedy = match calls.find(|(_, known, _)| *known == path) {
+            Some((method, ..)) => format!("is asked for with {method}"),
+            None => {
+                let paths: Vec<&str> = self.calls().map(|(_, path, _)| *path).collect();
+                let why = match path == INJECT && !self.rehearses {
+                    true => "faults are made with `view --rehearse` only".into(),
+                    false => did_you_mean::guess(path, paths.iter().copied())
+                        .unwrap_or_else(|| format!("there are {}", paths.join(", "))),
+                };
+                format!("is nothing that this server does; {why}")
+            }
         };
-        let (status, value) = match told {
-            Ok(value) => (200, value),
-            Err(Refusal(status, text)) => (status, json!({ "error": text })),
-        };
-        Response::new(status, "application/json", value.to_string())
+        Refusal(
+            405,
+            format!("request = {} {}: {remedy}", request.method, shown(path)),
+        )
     }
 
     fn card(&self) -> Value {
@@ -146,12 +227,16 @@ impl Api {
         let identity = &state.identity;
         let channels = state.scales.iter().enumerate().map(|(n, scale)| {
             let plate = state.plates[n].as_ref();
+            let text = match (plate, state.t_format[n].as_ref()) {
+                (Some(plate), _) => Some(id::plate_text(plate, identity.system_hz)),
+                (None, told) => told.map(id::t_format_text),
+            };
             json!({
                 "protocol": if identity.is_t_format(n) { "T-format" } else { "EnDat" },
                 "unit": scale.convert(0).unit,
                 "digits": scale.digits(),
                 "wraps_at": scale.wraps_at(),
-                "plate": plate.map(|p| plate_text(p, identity.system_hz)),
+                "plate": text,
                 "serial": plate.and_then(|p| p.serial.clone()),
             })
         });
@@ -226,16 +311,13 @@ impl Api {
     fn plot(&self, request: &Request) -> Result<Value, Refusal> {
         let state = self.shared.state();
         let (first, last) = state.history.span_s().unwrap_or((0.0, 0.0));
-        let from = number(request, "from", Some(first))?;
-        let to = number(request, "to", Some(last))?;
-        let buckets = number(request, "buckets", Some(BUCKETS))?;
-        if !(1.0..=BUCKETS_MAX).contains(&buckets) {
-            return Err(bad(format!(
-                "buckets = {buckets}: outside 1..{BUCKETS_MAX}"
-            )));
-        }
+        let time = |name, usual| decimal(request, name, usual, [-SECONDS_MAX, SECONDS_MAX]);
+        let (from, to) = (time("from", first)?, time("to", last)?);
+        let buckets = decimal(request, "buckets", BUCKETS, [1.0, BUCKETS_MAX])?;
         if to < from {
-            return Err(bad(format!("to = {to}: is before from = {from}")));
+            return Err(bad(format!(
+                "to = {to}: is before from = {from}; give a later time"
+            )));
         }
         // A moment has no length.
         let to = to.max(from + 1e-9);
@@ -248,8 +330,13 @@ impl Api {
         let mut traces = serde_json::Map::new();
         for name in wanted.split(',').filter(|name| !name.is_empty()) {
             let Some(n) = state.history.traces().iter().position(|t| t.name == name) else {
+                let known: Vec<&str> = (state.history.traces().iter())
+                    .map(|t| t.name.as_str())
+                    .collect();
                 return Err(bad(format!(
-                    "traces = {name:?}: there is none of that name"
+                    "traces = {}: there is none of that name; there are {}",
+                    shown(name),
+                    known.join(", ")
                 )));
             };
             let side = |which: usize| {
@@ -299,7 +386,7 @@ impl Api {
             let place = owner.card.place(&name)?;
             if place.register.name == TAKES_AWAY {
                 return Err(HostError::Name(format!(
-                    "{place}: reading it takes something away; it is not read here"
+                    "name = {place}: a read takes a byte of the stream away, which is a row of this page; `endat-gen reg read` reads it when the page has ended"
                 )));
             }
             reg::as_json(&mut owner.card, &place)
@@ -307,11 +394,17 @@ impl Api {
         Ok(told?)
     }
 
+    /// A channel that the card has.
+    fn channel(&self, request: &Request) -> Result<usize, Refusal> {
+        let channels = self.shared.state().identity.channels as u64;
+        whole(request, "channel", channels - 1).map(|n| n as usize)
+    }
+
     /// The drawing of `margin --svg`.
     fn margin(&self, request: &Request) -> Result<String, Refusal> {
-        let channel = whole(request, "channel", 7)? as usize;
+        let channel = self.channel(request)?;
         let told = call(&self.shared.jobs(), move |owner| {
-            margin::needs(&owner.card, channel)?;
+            margin::needs("channel", &owner.card, channel)?;
             margin::edges(&mut owner.card, channel)
         });
         Ok(edges_svg(
@@ -321,8 +414,7 @@ impl Api {
     }
 
     fn parameter(&self, request: &Request) -> Result<Value, Refusal> {
-        let channels = self.shared.state().identity.channels as u64;
-        let channel = whole(request, "channel", channels - 1)? as usize;
+        let channel = self.channel(request)?;
         let (area, address) = (
             whole(request, "area", 0xFF)? as u8,
             whole(request, "address", 0xFF)? as u8,

@@ -12,6 +12,7 @@ use endat_host::feed::Row;
 use endat_host::motion::ranges;
 use endat_host::name_plate::NamePlate;
 use endat_host::owner::{Handle, Jobs, Losses};
+use endat_host::t_format::TFormatState;
 use endat_host::transport::LinkState;
 use endat_host::units::Scale;
 use endat_host::{HostError, Transport};
@@ -34,6 +35,9 @@ const AGAIN: Duration = Duration::from_secs(1);
 /// The rate is that of so long.
 const RATE_OVER_S: f64 = 0.5;
 
+/// What a T-format encoder has told, or why it has not.
+type Told = Result<TFormatState, String>;
+
 /// A recording that a page has begun.
 pub struct Recording {
     /// Where it is.
@@ -51,6 +55,8 @@ pub struct State {
     pub identity: Identity,
     /// Name plates of its encoders.
     pub plates: Vec<Option<NamePlate>>,
+    /// What those of them that speak T-format have told, or why they have not.
+    pub t_format: Vec<Option<Told>>,
     /// What a measuring step is.
     pub scales: Vec<Scale>,
     /// Rows until now.
@@ -81,7 +87,7 @@ impl State {
     fn new(
         session: u64,
         identity: Identity,
-        plates: Vec<Option<NamePlate>>,
+        (plates, t_format): (Vec<Option<NamePlate>>, Vec<Option<Told>>),
         scales: Vec<Scale>,
     ) -> Self {
         let judge = Judge {
@@ -102,6 +108,7 @@ impl State {
             recent: VecDeque::new(),
             identity,
             plates,
+            t_format,
             scales,
         }
     }
@@ -161,8 +168,11 @@ impl State {
 
     /// Begins a recording in this folder; nobody else says what it is called.
     pub fn record(&mut self, folder: &Path) -> Result<(), String> {
-        if self.recording.is_some() {
-            return Err("a recording is under way".into());
+        if let Some(recording) = &self.recording {
+            let path = recording.path.display();
+            return Err(format!(
+                "record = {path}: is under way; stop it before you begin another one"
+            ));
         }
         let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
         // Colons are no part of a name everywhere.
@@ -227,8 +237,15 @@ fn begin(jobs: &Jobs, session: u64) -> Result<State, HostError> {
         owner.card.settle(|| ())?;
         let identity = *owner.card.identity();
         let plates = owner.card.name_plates()?;
+        let mut t_format = Vec::new();
+        for channel in 0..identity.channels {
+            let card = &mut owner.card;
+            let told = identity.is_t_format(channel);
+            t_format.push(told.then(|| card.t_format_state(channel)).transpose()?);
+        }
         owner.begin(false)?;
-        Ok(State::new(session, identity, plates, owner.scales.clone()))
+        let told = (plates, t_format);
+        Ok(State::new(session, identity, told, owner.scales.clone()))
     })
 }
 
@@ -369,7 +386,7 @@ mod tests {
             stream_additional_data: false,
         };
         let scales = vec![Scale::singleturn(10)];
-        let mut state = State::new(0, identity, vec![None], scales.clone());
+        let mut state = State::new(0, identity, (vec![None], vec![None]), scales.clone());
         let full = File::options().write(true).open("/dev/full").unwrap();
         let sheet =
             Sheet::new(Text::Csv, Lines::file(full), Layout::of(scales), 1e6, None).unwrap();

@@ -47,7 +47,10 @@ impl Guard {
         let header = |name: &str| request.headers.get(name).map(String::as_str);
         let refused = |why: &str| Some(Response::text(403, format!("refused: {why}\n")));
         let Some(host) = header("host") else {
-            return Some(Response::text(400, "no Host\n"));
+            return Some(Response::text(
+                400,
+                "Host: is missing; send the name of this server\n",
+            ));
         };
         // A foreign name that leads here is another page's way in.
         if self
@@ -64,18 +67,22 @@ impl Guard {
                 .strip_prefix("http://")
                 .is_some_and(|o| o.eq_ignore_ascii_case(host))
         };
+        let another =
+            "another page asks, and only pages of this server may; open this address itself";
         if header("origin").is_some_and(|origin| !is_own(origin)) {
-            return refused("another page asks");
+            return refused(another);
         }
         if header("sec-fetch-site").is_some_and(|from| !["same-origin", "none"].contains(&from))
             && request.path != "/"
         {
-            return refused("another page asks");
+            return refused(another);
         }
         let token = self.token.as_ref()?;
         if let Some(given) = request.query.get(TOKEN).filter(|_| request.path == "/") {
             if !is_same(given, token) {
-                return refused("the token is another one");
+                return refused(
+                    "the token is another one; open the address that the program has printed",
+                );
             }
             let mut response = Response::text(303, "");
             let cookie = format!("endat-{TOKEN}={token}; HttpOnly; SameSite=Strict; Path=/");

@@ -130,24 +130,32 @@ fn read(stream: &mut TcpStream) -> Result<Request, Option<Response>> {
     let mut buffer = [0; 1_024];
     loop {
         match parse(&bytes) {
-            Err(why) => return Err(Some(Response::text(400, format!("no HTTP request: {why}")))),
+            Err(why) => {
+                return Err(Some(Response::text(
+                    400,
+                    format!("request: {why}; this server speaks HTTP/1.1"),
+                )))
+            }
             Ok(Some((_, _, body))) if body > BODY_MAX => {
                 return Err(Some(Response::text(
                     413,
-                    format!("body of {body} bytes: at most {BODY_MAX}"),
+                    format!("body = {body} bytes: too long, at most {BODY_MAX}; what is asked for stands in the query"),
                 )));
             }
             Ok(Some((request, head, body))) if bytes.len() >= head + body => return Ok(request),
             Ok(None) if bytes.len() > HEAD_MAX => {
                 return Err(Some(Response::text(
                     431,
-                    format!("head of more than {HEAD_MAX} bytes"),
+                    format!("head: too long, at most {HEAD_MAX} bytes; send fewer headers"),
                 )));
             }
             Ok(_) => {}
         }
-        let late =
-            || (!bytes.is_empty()).then(|| Response::text(408, "the request has not come whole"));
+        let late = || {
+            (!bytes.is_empty()).then(|| {
+                Response::text(408, "request: has not come whole in time; send it at once")
+            })
+        };
         let left = end.saturating_duration_since(Instant::now());
         if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
             return Err(late());
@@ -225,7 +233,7 @@ pub fn serve(
             let _ = stream.set_write_timeout(Some(LOOK));
             let _ = write(
                 &mut stream,
-                &Response::text(503, "too many at once; try again"),
+                &Response::text(503, "request: too many at once; try again"),
             );
             continue;
         }

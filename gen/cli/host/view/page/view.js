@@ -20,9 +20,10 @@ let card = null, now = null, plot = null;
 let complaint = { text: "", until: 0 };
 const view = { live: true, span: 10, from: 0, to: 1, show: "position", wrap: false, zero: {}, tab: "causes" };
 
-async function ask(path, method) {
+async function ask(path, method, isText) {
   const response = await fetch(path, { method: method || "GET", signal: AbortSignal.timeout(30000) });
   const body = await response.text();
+  if (isText && response.ok) return body;
   let told;
   try { told = JSON.parse(body); } catch { throw new Error(body.trim() || response.status); }
   if (told.error) throw new Error(told.error);
@@ -395,16 +396,49 @@ function margins() {
   if (!has) { $("margin").replaceChildren(make("p", "This card does not measure its margin: [line] parts = [\"alignment\", \"margin\"]", "note")); return; }
   $("margin").replaceChildren(...card.channels.flatMap((channel, n) => {
     if (channel.protocol !== "EnDat") return [];
-    const image = make("img");
-    image.alt = `Where the edges of DATA are, and how far its eye is open, channel ${n}`;
-    image.dataset.channel = n;
-    return [image];
+    const figure = make("figure");
+    figure.dataset.channel = n;
+    return [figure];
   }));
+}
+
+// A drawing as a part of the page, in the page's colours.
+function drawing(text) {
+  // Its own style is that of a file: here it may not even be read.
+  const told = new DOMParser().parseFromString(text.replace(/<style>[^<]*<\/style>/, ""), "image/svg+xml").documentElement;
+  const picture = svg("svg", { role: "img", "aria-label": told.querySelector("title").textContent });
+  const caption = make("figcaption");
+  // Nor is its white paper of use, which has no class.
+  for (const part of [...told.children].filter((c) => c.classList.length)) {
+    // Letters in a drawing do not wrap: sentences stand above it.
+    const isSentence = part.getAttribute("text-anchor") === "start" && part.textContent.includes(" ");
+    if (isSentence) caption.append(make(part.classList.contains("title") ? "h2" : "p", part.textContent));
+    else picture.append(document.importNode(part, true));
+  }
+  return [caption, picture];
+}
+
+// As large as what is in it: letters are larger on a phone.
+function cropped(picture) {
+  const box = picture.getBBox();
+  if (box.width) picture.setAttribute("viewBox", [box.x - 4, box.y - 4, box.width + 8, box.height + 8].join(" "));
+}
+
+async function margin(figure) {
+  try {
+    const told = await ask("/api/margin.svg?channel=" + figure.dataset.channel, "GET", true);
+    // What is not shown has no size.
+    if (view.tab !== "margin") return;
+    const [caption, picture] = drawing(told);
+    figure.replaceChildren(caption, picture);
+    cropped(picture);
+  } catch (error) { figure.replaceChildren(make("p", error.message, "note")); }
 }
 
 function marginsNow() {
   if (view.tab !== "margin" || document.hidden) return;
-  document.querySelectorAll("#margin img").forEach((image) => { image.src = `/api/margin.svg?channel=${image.dataset.channel}&at=${Date.now()}`; });
+  document.querySelectorAll("#margin svg").forEach(cropped);
+  document.querySelectorAll("#margin figure").forEach(margin);
 }
 
 let names = [];
@@ -539,7 +573,7 @@ canvas.addEventListener("pointermove", (event) => {
   }
   if (plot) draw();
 });
-addEventListener("resize", () => { if (plot) redraw(); });
+addEventListener("resize", () => { if (plot) redraw(); document.querySelectorAll("#margin svg").forEach(cropped); });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { if (plot) draw(); });
 
 // ---- polling ----
