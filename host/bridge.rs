@@ -165,14 +165,41 @@ impl<T: Transport> Bridge<T> {
                 if !self.goes_on_well()? {
                     continue;
                 }
-                let word = |b: &[u8]| u32::from_be_bytes([b[0], b[1], b[2], b[3]]);
-                return Ok(bytes.chunks_exact(4).map(word).collect());
+                return Ok(words(&bytes));
             }
         }
         Err(HostError::Silent {
             tries,
             wait_ms: self.wait.as_millis() as u64,
         })
+    }
+
+    /// Reads the first `count` words of a card that should push and does not answer: has it begun anew, its answer has no marker. None if
+    /// nothing comes that `is_it`; what comes instead belongs to the stream, and none of it is lost.
+    pub(crate) fn read_unmarked(
+        &mut self,
+        count: usize,
+        is_it: impl Fn(&[u32]) -> bool,
+    ) -> Result<Option<Vec<u32>>, HostError> {
+        let sets = self.decoder.counts().sets;
+        for _ in 0..TRIES {
+            self.settle()?;
+            if self.decoder.counts().sets != sets {
+                return Ok(None);
+            }
+            self.send(&[2, count as u8, 0, 0, 0, 0])?;
+            let end = Instant::now() + self.wait;
+            while self.inbox.len() < 4 * count && Instant::now() < end {
+                self.fill(end.saturating_duration_since(Instant::now()))?;
+            }
+            let bytes: Vec<u8> = self.inbox.iter().copied().take(4 * count).collect();
+            let found = words(&bytes);
+            if found.len() == count && is_it(&found) {
+                self.inbox.drain(..4 * count);
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
     }
 
     /// Writes words from `address` on, in one command; there is no answer.
@@ -196,20 +223,24 @@ impl<T: Transport> Bridge<T> {
         Ok(count)
     }
 
-    /// Waits until the card has forgotten what was sent to it, and nothing comes any more (unless it pushes).
+    /// Waits until the card has forgotten what was sent to it, and nothing comes any more, or nothing but whole frames where it pushes.
     fn settle(&mut self) -> Result<(), HostError> {
         let end = Instant::now() + SETTLE_MAX;
         let mut quiet_since = Instant::now();
+        let mut damaged = self.decoder.damaged();
         while quiet_since.elapsed() < FORGET && Instant::now() < end {
-            if self.fill(FORGET)? > 0 {
-                quiet_since = Instant::now();
-            }
-            if self.pushes {
-                while let Some(byte) = self.inbox.pop_front() {
+            self.fill(FORGET)?;
+            let mut is_noisy = !self.pushes && !self.inbox.is_empty();
+            while let Some(byte) = self.inbox.pop_front() {
+                if self.pushes {
                     self.pushed_byte(byte);
                 }
-            } else {
-                self.inbox.clear();
+            }
+            // The rest of an answer spoils the frame behind it.
+            is_noisy |= self.decoder.damaged() != damaged;
+            damaged = self.decoder.damaged();
+            if is_noisy {
+                quiet_since = Instant::now();
             }
         }
         Ok(())
@@ -258,6 +289,12 @@ impl<T: Transport> Bridge<T> {
         self.at_boundary = true;
         Ok(Some(bytes))
     }
+}
+
+/// Words as they come.
+fn words(bytes: &[u8]) -> Vec<u32> {
+    let word = |b: &[u8]| u32::from_be_bytes([b[0], b[1], b[2], b[3]]);
+    bytes.chunks_exact(4).map(word).collect()
 }
 
 fn lost(error: std::io::Error) -> HostError {

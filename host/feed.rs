@@ -119,6 +119,8 @@ pub struct Feed {
     witness: Option<Witness>,
     /// Its count of triggers then, until it has been compared with the rows.
     count: Option<u32>,
+    /// It was asked, and has not answered yet.
+    in_doubt: bool,
     /// How often the link had been lost by then.
     reopened: u64,
     /// Sequence numbers of the last row, where results are read.
@@ -151,6 +153,7 @@ impl Feed {
             heard: Instant::now(),
             witness: Some(witness),
             count: None,
+            in_doubt: false,
             reopened,
             sequences: Vec::new(),
         })
@@ -174,6 +177,7 @@ impl Feed {
         let has_answered = witness.ask(card)?;
         self.witness = Some(witness);
         self.heard = Instant::now();
+        self.in_doubt = !has_answered;
         if has_answered {
             self.reopened = link.reopened;
             self.count = Some(witness.triggers());
@@ -290,7 +294,7 @@ impl Feed {
         if self.streams {
             let mut sets = card.bridge().pushed(wait)?;
             // Whoever was silent may have counted on meanwhile, further than a number of 16 bits tells.
-            let was_silent = !sets.is_empty() && self.heard.elapsed() > SILENCE;
+            let was_silent = !sets.is_empty() && (self.in_doubt || self.heard.elapsed() > SILENCE);
             if !sets.is_empty() {
                 self.heard = Instant::now();
             }
@@ -364,6 +368,7 @@ mod tests {
             heard: Instant::now(),
             witness: None,
             count: None,
+            in_doubt: false,
             reopened: 0,
             sequences: Vec::new(),
         };

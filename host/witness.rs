@@ -20,9 +20,8 @@ pub(crate) struct Witness {
 struct Answer {
     /// From the first on.
     words: Vec<u32>,
-    mark: u32,
-    /// It pushes nothing although it should.
-    is_stopped: bool,
+    /// None if it pushes nothing although it should.
+    mark: Option<u32>,
 }
 
 impl Witness {
@@ -48,7 +47,7 @@ impl Witness {
         let Some(mut now) = answer(card)? else {
             return Ok(false);
         };
-        if !now.is_stopped && self.verdict(card.identity(), &now).is_err() {
+        if now.mark.is_some() && self.verdict(card.identity(), &now).is_err() {
             // Answers have no check: a byte may have been changed on its way.
             match answer(card)? {
                 Some(again) => now = again,
@@ -75,12 +74,12 @@ impl Witness {
                 "the card was restarted: it has counted {count} triggers since its reset, and had counted at least {before} before"
             ));
         }
-        if now.is_stopped {
+        let Some(mark) = now.mark else {
             return refused(
                 "the card was restarted, or another program has used it: it does not push its stream any more".into(),
             );
-        }
-        if self.mark.is_some_and(|mark| mark != now.mark) {
+        };
+        if self.mark.is_some_and(|was| was != mark) {
             return refused(format!(
                 "the card was restarted, or another one is there, or another program has used it: what was left in {} is gone",
                 scratch()
@@ -106,37 +105,37 @@ impl Answer {
     }
 
     /// None if it is no card, or has fallen silent meanwhile; an error if nobody answers.
-    fn read<T: Transport>(card: &mut Card<T>, is_stopped: bool) -> Result<Option<Self>, HostError> {
+    fn read<T: Transport>(card: &mut Card<T>) -> Result<Option<Self>, HostError> {
         let words = card.bridge().read(0, place() + 1)?;
         let mark = match card.read(&scratch()) {
             Err(HostError::Silent { .. }) => return Ok(None),
             mark => mark?,
         };
-        Ok((words[0] == ID).then_some(Self {
+        Ok(is_card(&words).then_some(Self {
             words,
-            mark,
-            is_stopped,
+            mark: Some(mark),
         }))
     }
+}
+
+/// Whether these words are the first ones of a card.
+fn is_card(words: &[u32]) -> bool {
+    words[0] == ID
 }
 
 /// What the card answers; none if nobody answers, or no card.
 fn answer<T: Transport>(card: &mut Card<T>) -> Result<Option<Answer>, HostError> {
     let damaged = card.bridge().decoder().damaged();
-    match Answer::read(card, false) {
+    match Answer::read(card) {
         Err(HostError::Silent { .. }) if card.bridge().pushes() => {}
         Err(HostError::Silent { .. }) => return Ok(None),
         now => return now,
     }
-    // A card that has begun anew pushes nothing, and its answers have no marker.
-    card.bridge().set_pushes(false);
-    let now = match Answer::read(card, true) {
-        Err(HostError::Silent { .. }) => None,
-        now => now?,
-    };
-    match now {
-        Some(_) => card.bridge().forgive(damaged),
-        None => card.bridge().set_pushes(true),
-    }
-    Ok(now)
+    // A card that has begun anew pushes nothing, and its answers have no marker. One that was only asleep may go on at any moment.
+    let words = card.bridge().read_unmarked(place() + 1, is_card)?;
+    Ok(words.map(|words| {
+        card.bridge().set_pushes(false);
+        card.bridge().forgive(damaged);
+        Answer { words, mark: None }
+    }))
 }

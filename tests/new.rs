@@ -137,9 +137,9 @@ fn every_key_is_there_with_what_the_table_of_keys_says() {
 #[test]
 fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
     let dir = Dir::new("new");
-    // Protocol, bus, board, name, clock, channels, encoder, bits, command, EnDat clock, cable, rate, baud, reads.
+    // Protocol, bus, board, name, clock, channels, encoder, bits, command, EnDat clock, cable, rate, triggers, service, baud, reads.
     let lines =
-        "\nuart\nulx3s\n2cards\nmine\n0\n\n2\nROD 1\n99\n37\n000111\n4000000\nlong\n50\n\n\n\n";
+        "\nuart\nulx3s\n2cards\nmine\n0\n\n2\nROD 1\n99\n37\n000111\n4000000\nlong\n50\n\ntimre\ntimer, register\ninitialise\nrequests,initialise\n\n\n";
     let output = asked(&dir, &[], lines);
     let told = text(&output.stderr);
     assert!(output.status.success(), "{told}");
@@ -148,6 +148,9 @@ fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
         "clock.system_hz = 0: outside ",
         "channel.position_bits = 99: outside 1..48",
         "endat.cable_m = long: is not a number from 0 to ",
+        "unknown trigger; use pin, timer, register",
+        "service.parts = \"initialise\": every other part takes requests",
+        "several with commas, or none",
     ] {
         assert!(told.contains(wrong), "{wrong}: {told}");
     }
@@ -159,6 +162,19 @@ fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
     assert_eq!(card.card.channels.len(), 2);
     assert_eq!(card.encoders, ["ROD 1", "ROD 1"]);
     assert_eq!(card.card.channels[1].request.clock_hz, 4_000_000);
+    let written = std::fs::read_to_string(&path).unwrap();
+    assert!(
+        written.contains("\nsources = [\"timer\", \"register\"]\n"),
+        "{written}"
+    );
+    assert!(
+        written.contains("\nparts = [\"requests\", \"initialise\"]\n"),
+        "{written}"
+    );
+    let plain = good(&["new", "--yes", "--trigger-sources", "none", "-"]);
+    assert!(plain.contains("\nsources = []\n"), "{plain}");
+    // Who wants none of it gets a card without a service.
+    assert!(plain.contains("\nparts = []\n"), "{plain}");
     // Not a word of warning.
     let out = dir.path("out");
     assert!(good(&["emit", "--config", &path, "--out", &out]).contains("mine_top.v"));

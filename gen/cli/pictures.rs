@@ -265,8 +265,9 @@ fn write(file: &File) -> Result<Vec<String>, GenError> {
     let path = &file.path;
     let artifact = Artifact::new(file_name(file.option, path)?, &file.text);
     let files = artifact::write(folder(path), &[artifact], "give another file")?;
-    Ok(files
-        .iter()
-        .map(|_| format!("wrote {}", path.display()))
-        .collect())
+    let told = match files.is_empty() {
+        true => format!("{}: up to date", path.display()),
+        false => format!("wrote {}", path.display()),
+    };
+    Ok(vec![told])
 }

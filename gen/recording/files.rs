@@ -62,6 +62,25 @@ pub fn highest(path: &Path) -> u32 {
     numbers.max().unwrap_or(0)
 }
 
+/// Whether a file is the one of the next number behind another one of the same recording.
+pub fn is_next(path: &Path, before: &Path) -> bool {
+    let stem = before.file_stem().unwrap_or_default().to_string_lossy();
+    let number = stem.rsplit_once('-').and_then(|(name, digits)| {
+        let digits = Some(digits).filter(|d| d.len() >= DIGITS)?;
+        Some((name.to_owned(), digits.parse::<u32>().ok()?))
+    });
+    number.is_some_and(|(name, number)| {
+        let mut plain = before.with_file_name(name);
+        if let Some(suffix) = before.extension() {
+            plain.as_mut_os_string().push(".");
+            plain.as_mut_os_string().push(suffix);
+        }
+        number
+            .checked_add(1)
+            .is_some_and(|n| numbered(&plain, n) == path)
+    })
+}
+
 /// The folder that a file is in.
 fn folder(path: &Path) -> &Path {
     let parent = path.parent().filter(|p| !p.as_os_str().is_empty());

@@ -6,7 +6,7 @@ use super::read;
 use crate::error::GenError;
 
 /// Refuses files that rows of this layout cannot go on behind; what is to be told of the last one.
-pub fn check(target: &Target, layout: &Layout) -> Result<Vec<String>, GenError> {
+pub fn check(target: &Target, layout: &Layout, says_when: bool) -> Result<Vec<String>, GenError> {
     let Target::Numbered { path, resume: true } = target else {
         return Ok(Vec::new());
     };
@@ -39,7 +39,12 @@ pub fn check(target: &Target, layout: &Layout) -> Result<Vec<String>, GenError> 
     before.sort_unstable();
     now.sort_unstable();
     if before == now && units.eq(head.units.iter().map(String::as_str)) {
-        return Ok(Vec::new());
+        let told = format!(
+            "--resume: {} and what comes do not both say when they were begun: `stats` and `plot` put them right behind each other; --about lets text say so",
+            last.display()
+        );
+        let is_known = says_when && head.start().is_some();
+        return Ok(Vec::from_iter((!is_known).then_some(told)));
     }
     let columns = |channels: usize, derived: &[&str]| match derived {
         [] => format!("{channels} channels"),

@@ -180,6 +180,7 @@ pub struct Stats {
     pub bad_rows: u64,
     /// Times of the first and the last row.
     pub times_s: Option<(f64, f64)>,
+    /// How many came behind the first one, and the last one.
     triggers: Option<(u64, u64)>,
     /// Channels.
     pub channels: Vec<ChannelStats>,
@@ -224,7 +225,11 @@ impl Stats {
         let first = self.times_s.map_or(row.time_s, |t| t.0);
         self.times_s = Some((first, row.time_s));
         if let Some(trigger) = row.trigger {
-            self.triggers = Some((self.triggers.map_or(trigger, |t| t.0), trigger));
+            // A recording that was gone on with may count from the beginning again.
+            let steps = |(count, last): (u64, u64)| {
+                count.saturating_add(trigger.checked_sub(last).unwrap_or(1))
+            };
+            self.triggers = Some((self.triggers.map_or(0, steps), trigger));
         }
         if row.begins_file {
             // What came between the files is in none of them.
@@ -256,9 +261,7 @@ impl Stats {
     /// Triggers per second of the card's time, and rows. None of a single row.
     pub fn rates_hz(&self) -> Option<(Option<f64>, f64)> {
         let span_s = Some(self.duration_s()).filter(|s| *s > 0.0)?;
-        let triggers = self
-            .triggers
-            .and_then(|(first, last)| last.checked_sub(first));
+        let triggers = self.triggers.map(|(count, _)| count);
         let rows = (self.rows - 1) as f64 / span_s;
         Some((triggers.map(|n| n as f64 / span_s), rows))
     }

@@ -3,7 +3,6 @@
 use super::VirtualCard;
 use crate::error::{shown, GenError};
 use crate::number::{decimal, number};
-use endat_hdl::config::CHANNELS;
 use endat_host::did_you_mean;
 use endat_sim::encoder::{Cause, Defect};
 use endat_sim::line::{FaultKind, GlitchRate, Jitter, LineFault, Wire};
@@ -70,8 +69,6 @@ const JITTER_MAX: Time = US;
 const PULSE: (Time, Time) = (40 * NS, 200 * NS);
 /// The rarest noise that is any.
 const NOISE_MIN: f64 = 1e-9;
-/// Highest channel of a card.
-const CHANNEL_MAX: u64 = *CHANNELS.end() as u64 - 1;
 /// Bits of alarms and warnings.
 const STATUS_MAX: u64 = 0xFFFF;
 
@@ -90,6 +87,7 @@ fn time(what: &str, text: &str, most: Time) -> Result<Time, String> {
     let found = units
         .iter()
         .find_map(|(name, unit)| Some((name, text.strip_suffix(name)?, *unit)));
+    let found = found.filter(|(_, digits, _)| !digits.is_empty());
     let Some((name, digits, unit)) = found else {
         let limit = format!("is no time from 0 to {}us; write 20ns or 0.5us", most / US);
         return Err(wrong(what, text, &limit));
@@ -97,6 +95,26 @@ fn time(what: &str, text: &str, most: Time) -> Result<Time, String> {
     let what = format!("{what}, in {name}");
     let number = text_of(decimal(&what, digits, 0.0..=most as f64 / unit as f64))?;
     Ok((number * unit as f64) as Time)
+}
+
+/// What stands for each word of what a fault takes, in an example.
+const EXAMPLES: [(&str, &str); 6] = [
+    ("CHANNEL", "0"),
+    ("[N]", "3"),
+    ("[BITS]", "3"),
+    ("TIME", "0.5us"),
+    ("RATE", "1e-3"),
+    ("KIND", "stuck_low"),
+];
+
+/// How a fault is written.
+fn example(name: &str, takes: &str) -> String {
+    let known = |word: &str| EXAMPLES.iter().find(|e| e.0 == word).map_or("", |e| e.1);
+    let words: Vec<&str> = takes.split(' ').map(known).collect();
+    format!(
+        "inject {name}: takes {takes}; write for example {name} {}",
+        words.join(" ")
+    )
 }
 
 /// The name that may have been meant.
@@ -123,15 +141,17 @@ impl Fault {
         let (channel, value) = match rest {
             [channel] => (channel, None),
             [channel, value] if *takes != "CHANNEL" => (channel, Some(*value)),
-            _ => {
-                return Err(format!(
-                    "inject {name}: takes {takes}; write for example {name} {}",
-                    takes.replace("CHANNEL", "0")
-                ))
-            }
+            _ => return Err(example(name, takes)),
         };
         // Which ones there are, the card says.
-        let channel = text_of(number("channel", channel, 0..=CHANNEL_MAX))? as usize;
+        let channel = number("channel", channel, 0..=u64::MAX).map_err(|_| {
+            wrong(
+                "channel",
+                channel,
+                "is no channel; give its number, 0 for the first",
+            )
+        })?;
+        let channel = usize::try_from(channel).unwrap_or(usize::MAX);
         let count = || {
             value.map_or(Ok(1), |text| {
                 text_of(number("frames", text, 1..=FRAMES_MAX))
@@ -142,7 +162,7 @@ impl Fault {
                 .map_or(Ok(1), |text| text_of(number("bits", text, 1..=STATUS_MAX)))
                 .map(|b| b as u16)
         };
-        let needed = || value.ok_or_else(|| format!("inject {name}: takes {takes}"));
+        let needed = || value.ok_or_else(|| example(name, takes));
         let deed = match *name {
             "unplug" => Deed::Supply(false),
             "plug" => Deed::Supply(true),
@@ -197,8 +217,14 @@ impl VirtualCard {
         let now = self.bench.now();
         let seed = self.bench.cycle();
         let Some(port) = self.ports.get(fault.channel).copied() else {
-            let last = self.ports.len() - 1;
-            return Err(format!("channel = {}: outside 0..{last}", fault.channel));
+            let there = match self.ports.len() {
+                1 => "channel 0 alone".to_owned(),
+                count => format!("channels 0 to {}", count - 1),
+            };
+            return Err(format!(
+                "channel = {}: this card has {there}; give one of these",
+                words[1]
+            ));
         };
         match port {
             PortOf::TFormat(index) => {
@@ -359,12 +385,21 @@ mod tests {
                 "inject unplug: takes CHANNEL; write for example unplug 0",
             ),
             ("unplug 0 1", "takes CHANNEL"),
-            ("unplug x", "channel = x: is not a number from 0 to 7"),
+            ("unplug x", "channel = x: is no channel; give its number"),
             ("crc 0 0", "frames = 0: outside 1..1000000000"),
             ("slow 0 30", "slow = 30: is no time from 0 to 10000us"),
-            ("unplug -1", "channel = -1: outside 0..7"),
+            ("unplug -1", "channel = -1: is no channel; give its number"),
             ("slow 0 -1us", "slow, in us = -1: outside 0..10000"),
-            ("slow 0", "inject slow: takes CHANNEL TIME"),
+            (
+                "slow 0",
+                "inject slow: takes CHANNEL TIME; write for example slow 0 0.5us",
+            ),
+            ("jitter 0 ns", "jitter = ns: is no time from 0 to 1us"),
+            (
+                "jitter 0 -20ns",
+                "jitter, in ns = -20: outside 0..1000; give a number",
+            ),
+            ("jitter 0 infms", "jitter, in ms = inf: outside"),
             (
                 "noise 0 2",
                 "noise, in pulses per microsecond = 2: outside 0.000000001..1",
@@ -377,15 +412,11 @@ mod tests {
             assert!(error.contains(told), "{text}: {error}");
         }
         for (name, takes, _) in FAULTS {
-            let value = match takes.split_once(' ').map(|t| t.1) {
-                None => "",
-                Some("TIME") => "0.5us",
-                Some("RATE") => "1e-3",
-                Some("KIND") => "stuck_low",
-                Some(_) => "3",
-            };
-            let text = format!("{name} 1 {value}");
-            assert_eq!(parse(&text).map(|f| f.channel), Ok(1), "{text}");
+            let told = example(name, takes);
+            let (_, text) = told.split_once("example ").unwrap();
+            let words: Vec<&str> = text.split(' ').collect();
+            assert_eq!(words.len(), 1 + takes.split(' ').count(), "{text}");
+            assert_eq!(parse(text).map(|f| f.channel), Ok(0), "{text}");
         }
     }
 }

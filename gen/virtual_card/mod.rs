@@ -108,14 +108,14 @@ pub struct VirtualCard {
 /// What a port begins with that is simulated in this process; `load` is a card whose sets of the stream are made.
 const VIRTUAL: [(&str, bool); 2] = [("virtual", false), ("load", true)];
 
-/// What is behind `virtual` or `load` in the name of a port: a preset or a file, and whether sets are made; none for other ports.
-fn behind_virtual(port: &str) -> Option<(&str, bool)> {
+/// What is behind `virtual` or `load` in the name of a port: a preset or a file, which of the two it was, and whether sets are made; none for other ports.
+fn behind_virtual(port: &str) -> Option<(&str, &'static str, bool)> {
     let found = VIRTUAL
         .iter()
-        .find_map(|(word, makes_sets)| Some((port.strip_prefix(word)?, *makes_sets)));
+        .find_map(|(word, makes_sets)| Some((port.strip_prefix(word)?, *word, *makes_sets)));
     match found? {
-        ("", makes_sets) => Some((DEFAULT_PRESET, makes_sets)),
-        (rest, makes_sets) => Some((rest.strip_prefix(':')?, makes_sets)),
+        ("", word, makes_sets) => Some((DEFAULT_PRESET, word, makes_sets)),
+        (rest, word, makes_sets) => Some((rest.strip_prefix(':')?, word, makes_sets)),
     }
 }
 
@@ -126,13 +126,13 @@ pub fn is_virtual(port: &str) -> bool {
 
 /// The card of a port called `virtual`, `virtual:PRESET` or `virtual:FILE.toml`, or the same with `load`; none for other ports.
 pub fn virtual_card_at(port: &str) -> Result<Option<VirtualCard>, GenError> {
-    let Some((name, makes_sets)) = behind_virtual(port) else {
+    let Some((name, word, makes_sets)) = behind_virtual(port) else {
         return Ok(None);
     };
     let project = match name.ends_with(".toml") {
         true => load_file(Path::new(name))?,
         false => {
-            preset_of("virtual:PRESET in --port", name)?;
+            preset_of(&format!("{word}:PRESET in --port"), name)?;
             load_preset(name)?
         }
     };

@@ -1,6 +1,8 @@
 //! A log whose link is lost and found again: the card has run on, was restarted, or is another one.
 
 use super::{card_of, changed, slow_card, Served};
+#[cfg(unix)]
+use crate::program;
 use crate::tools;
 use endat_gen::cli;
 use endat_gen::config::Project;
@@ -96,6 +98,75 @@ fn served_at(address: &str, project: Project) -> Served {
             thread::sleep(Duration::from_millis(100));
         }
     })
+}
+
+/// A card that makes its sets by arithmetic, as many as a real one, in a process that can be stopped.
+#[cfg(unix)]
+struct Asleep(std::process::Child);
+
+#[cfg(unix)]
+impl Asleep {
+    fn signal(&self, name: &str) {
+        let id = self.0.id().to_string();
+        let sent = std::process::Command::new("kill")
+            .args([name, &id])
+            .status();
+        assert!(sent.unwrap().success());
+    }
+}
+
+#[cfg(unix)]
+impl Drop for Asleep {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Catches a host that takes a card for a restarted one while it only sleeps, throws away for seconds what it sends when it wakes, and
+/// counts that as missing. Whether it wakes while it is asked as the one that it was, or as a restarted one.
+#[cfg(unix)]
+#[test]
+fn a_card_that_slept_is_heard_as_soon_as_it_wakes() {
+    let mut command = program::program();
+    command.args(["card", "--preset", "s6_two_channel", "--load"]);
+    let (process, line) = program::begun(command.args(["--tcp", "127.0.0.1:0"]));
+    let asleep = Asleep(process);
+    let link = endat_host::transport::Port::open(line.trim(), 3_000_000).unwrap();
+    let mut card = Card::find(Bridge::new(link)).unwrap();
+    let mut feed = Feed::begin(&mut card, false).unwrap();
+    let mut rows = VecDeque::new();
+    let slice = Duration::from_millis(20);
+    let mut listen = |until: &mut dyn FnMut(usize) -> bool| {
+        let begin = Instant::now();
+        let (mut all, mut missing) = (0, 0);
+        while !until(all) {
+            assert!(begin.elapsed() < PATIENCE, "{all} rows");
+            feed.fill(&mut card, &mut rows, slice).unwrap();
+            all += rows.len();
+            missing += rows.drain(..).map(|row| row.missing).sum::<u64>();
+        }
+        (begin.elapsed(), missing)
+    };
+    for sleep in [Duration::from_millis(1_600), Duration::from_millis(3_900)] {
+        listen(&mut |rows| rows > 5_000);
+        asleep.signal("-STOP");
+        let begin = Instant::now();
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                thread::sleep(sleep);
+                asleep.signal("-CONT");
+            });
+            // The host has seen its end of the silence.
+            listen(&mut |_| begin.elapsed() > sleep);
+        });
+        let (took, missing) = listen(&mut |rows| rows > 5_000);
+        // Its answers to what it was asked asleep stand in the way of some.
+        assert!(
+            took < Duration::from_secs(2) && missing < 100,
+            "{sleep:?}: {took:?}, {missing} missing"
+        );
+    }
 }
 
 /// Catches a restarted count that is taken for one that has wrapped, and another card's rows in the file of the one before.

@@ -58,6 +58,60 @@ fn what_a_log_cannot_go_on_behind_is_refused_with_its_remedy() {
     );
 }
 
+/// Catches files of one recording of which nobody gives figures, because they do not say when they were begun; and two recordings that
+/// are taken for one.
+#[test]
+fn text_that_was_gone_on_with_has_figures_and_a_drawing() {
+    let dir = Dir::new("resume-figures");
+    for form in ["csv", "jsonl"] {
+        let out = dir.path(&format!("night.{form}"));
+        let files = [1, 2, 3].map(|n| dir.path(&format!("night-000{n}.{form}")));
+        let pause = "do not both say when they were begun";
+        for (n, about) in [false, false, true].into_iter().enumerate() {
+            let more = ["--resume", "--about"];
+            let outcome = log(&out, &more[..1 + usize::from(about)]);
+            assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+            assert!(fs::exists(&files[n]).unwrap());
+        }
+        let alone: Value = serde_json::from_str(&good(&["stats", "--json", &files[0]])).unwrap();
+        let all: Vec<&str> = files.iter().map(String::as_str).collect();
+        let told = run(&[&["stats", "--json"][..], &all].concat());
+        assert_eq!(told.exit_code, 0, "{told:?}");
+        assert_eq!(told.messages.len(), 2, "{told:?}");
+        assert!(told.messages[1].starts_with(&files[2]), "{told:?}");
+        assert!(told.messages[0].contains("is put right behind"), "{told:?}");
+        let whole: Value = serde_json::from_str(&told.stdout).unwrap();
+        let number = |of: &Value, name: &str| of[name].as_f64().unwrap();
+        assert_eq!(number(&whole, "rows"), 3.0 * number(&alone, "rows"));
+        let ratio = number(&whole, "duration_s") / number(&alone, "duration_s");
+        assert!((3.0..3.1).contains(&ratio), "{ratio}");
+        assert_eq!(number(&whole, "missing"), 0.0);
+        assert!((number(&whole, "trigger_hz") / number(&alone, "trigger_hz") - 1.0).abs() < 0.05);
+        let plot = run(&[&["plot"][..], &all].concat());
+        assert_eq!(plot.exit_code, 0, "{plot:?}");
+        // Not of following numbers, or not in their order: nobody knows.
+        for files in [[all[0], all[2]], [all[1], all[0]]] {
+            let told = bad(&[&["stats"][..], &files].concat(), 2);
+            assert!(told.contains("another recording begins here"), "{told}");
+        }
+        let program = program()
+            .args([
+                "log",
+                "--port",
+                "virtual",
+                "--samples",
+                "5",
+                "--resume",
+                "--out",
+                &out,
+            ])
+            .output()
+            .unwrap();
+        let told = String::from_utf8(program.stderr).unwrap();
+        assert!(program.status.success() && told.contains(pause), "{told}");
+    }
+}
+
 #[test]
 fn an_unknown_suffix_is_refused_and_a_new_folder_is_told() {
     let dir = Dir::new("suffix");

@@ -113,7 +113,24 @@ fn wrong_faults_and_wrong_cards_are_told() {
         bad(&[&begin[..], words].concat(), 2)
     };
     assert!(inject(&["unplgu", "0"]).contains("did you mean unplug?"));
-    assert!(inject(&["unplug", "2"]).contains("channel = 2: outside 0..1"));
+    for channel in ["2", "7", "8", "0x99999999999"] {
+        let told = inject(&["unplug", channel]);
+        let right = format!("channel = {channel}: this card has channels 0 to 1; give one of");
+        assert!(told.contains(&right), "{told}");
+    }
+    // What looks like an option is a value.
+    let negative = inject(&["jitter", "0", "-20ns"]);
+    assert!(
+        negative.contains("-20: outside 0..1000; give"),
+        "{negative}"
+    );
+    let behind = bad(&["inject", "slow", "0", "-5us", "--port", &card.name], 2);
+    assert!(behind.contains("-5: outside 0..10000; give"), "{behind}");
+    let preset = bad(&["log", "--port", "load:nothere", "--samples", "1"], 2);
+    assert!(
+        preset.contains("load:PRESET in --port = nothere: unknown preset"),
+        "{preset}"
+    );
     let elsewhere = bad(
         &["inject", "--port", "tcp:192.0.2.1:7700", "unplug", "0"],
         2,

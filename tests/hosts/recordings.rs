@@ -60,6 +60,17 @@ fn every_form_has_the_same_rows() {
         let drawing = file.replace("/r.", "/drawn-") + ".svg";
         let plot = run(&["plot", file, "-o", &drawing, "--difference", "--velocity"]);
         assert_eq!(plot.exit_code, 0, "{plot:?}");
+        assert_eq!(plot.messages, [format!("wrote {drawing}")]);
+        let again = run(&["plot", file, "-o", &drawing, "--difference", "--velocity"]);
+        assert_eq!(again.messages, [format!("{drawing}: up to date")]);
+        for name in ["r.png", "r", "r.svg.gz"] {
+            let other = dir.path(name);
+            let told = bad(&["plot", file, "-o", &other], 2);
+            assert!(
+                told.contains("ends in .svg") && !fs::exists(&other).unwrap(),
+                "{told}"
+            );
+        }
         let drawn = fs::read_to_string(&drawing).unwrap();
         for panel in [
             "channel 1 (deg)",

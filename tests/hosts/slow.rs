@@ -1,7 +1,7 @@
 //! A host that is slower than the card: what is lost is lost as whole sets, and counted.
 
 use super::{card_of, found, quick, SERVICE};
-use endat_gen::virtual_card::VirtualCard;
+use endat_gen::virtual_card::{Door, VirtualCard};
 use endat_host::feed::{Feed, Row};
 use endat_host::registers::Place;
 use endat_host::stream::Decoder;
@@ -9,6 +9,39 @@ use endat_host::{Bridge, Card, Transport};
 use std::collections::{BTreeSet, VecDeque};
 use std::io;
 use std::time::Duration;
+
+/// Catches a write whose effect comes later than anybody would think, and of which nobody is told.
+#[test]
+fn a_period_that_is_written_while_the_timer_runs_says_when_it_counts() {
+    use super::{slow_card, Served};
+    use crate::program::{good, run};
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let write = |name: &str, value: &str| {
+        let done = run(&["reg", "write", name, value, "--port", &card.name]);
+        assert_eq!(done.exit_code, 0, "{done:?}");
+        done.messages.join("\n")
+    };
+    let told = write("card_config.trigger_period", "2000000");
+    assert!(
+        told.contains("the period under way is the new one"),
+        "{told}"
+    );
+    assert_eq!(write("card_config.trigger_period", "2000000"), "");
+    let told = write("card_config.trigger_period.value", "1000000");
+    // Its timer has 24 bits.
+    assert!(
+        told.contains("through all of its 16777216 cycles"),
+        "{told}"
+    );
+    assert!(
+        told.contains("write 0 to card_config.trigger_sources.timer"),
+        "{told}"
+    );
+    let timer = "card_config.trigger_sources.timer";
+    good(&["reg", "write", timer, "0", "--port", &card.name]);
+    assert_eq!(write("card_config.trigger_period", "20000"), "");
+    good(&["reg", "write", timer, "1", "--port", &card.name]);
+}
 
 /// Bytes that the operating system keeps for a program that does not read: a hundred sets and a part of one.
 const ROOM: usize = 100 * 28 + 11;

@@ -22,8 +22,14 @@ pub struct InjectArgs {
     #[arg(long, requires = "list")]
     json: bool,
     /// Fault, channel, and how much, as in: unplug 0, crc 1 5, slow 0 30us, heal 0
-    #[arg(value_name = "FAULT", required_unless_present = "list", num_args = 1.., allow_negative_numbers = true)]
-    fault: Vec<String>,
+    #[arg(value_name = "FAULT", required_unless_present = "list")]
+    fault: Option<String>,
+    /// Channel
+    #[arg(value_name = "CHANNEL", allow_negative_numbers = true)]
+    channel: Option<String>,
+    /// How much, for faults that take it
+    #[arg(value_name = "VALUE", allow_hyphen_values = true)]
+    value: Option<String>,
 }
 
 /// A card answers within this; a machine may be busy.
@@ -46,7 +52,8 @@ pub fn run(arguments: &InjectArgs) -> Result<Outcome, GenError> {
         });
         return Ok(Outcome::good(lines.collect::<String>()));
     }
-    let words: Vec<&str> = arguments.fault.iter().map(String::as_str).collect();
+    let words = [&arguments.fault, &arguments.channel, &arguments.value];
+    let words: Vec<&str> = words.into_iter().flatten().map(String::as_str).collect();
     let port = arguments.port.as_deref().unwrap_or_default();
     make(port, &words).map(|done| Outcome::good(done + "\n"))
 }

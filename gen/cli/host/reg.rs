@@ -203,6 +203,21 @@ fn value_of(place: &Place, text: &str, force: bool) -> Result<u32, GenError> {
     number("value", text, 0..=most.into()).map(|n| n as u32)
 }
 
+/// When a period of the timer that was written takes effect, if the timer runs; `before` is the one until now.
+fn period_told(card: &mut AnyCard, place: &Place, before: u32) -> Result<String, HostError> {
+    let now = card.read(place)?;
+    let field = place.register.field("value");
+    let counts = field.map_or(0, |f| u64::from(f.mask() >> f.lsb) + 1);
+    let hz = f64::from(card.identity().system_hz.max(1));
+    Ok(match now < before {
+        true => format!(
+            "{place}: the timer was on, and may have counted beyond {now} already: then the next trigger comes only when it has counted through all of its {counts} cycles, {:.3} s; write 0 to card_config.trigger_sources.timer before, and 1 behind it",
+            counts as f64 / hz
+        ),
+        false => format!("{place}: the timer was on, and the period under way is the new one"),
+    })
+}
+
 fn write(
     card: &mut AnyCard,
     name: &str,
@@ -216,6 +231,14 @@ fn write(
         card.permits(&place, value)
             .map_err(|e| GenError::input(format!("{e}; --force writes it all the same")))?;
     }
+    let period = card.place("card_config.trigger_period").map_err(told)?;
+    let running = match place.address() == period.address() {
+        true => card
+            .read_named("card_config.trigger_sources.timer")
+            .and_then(|is_on| Ok((is_on == 1).then_some(card.read(&period)?))),
+        false => Ok(None),
+    };
+    let running = running.map_err(told)?;
     card.write(&place, value).map_err(told)?;
     if place.register.access == Access::Strobe && as_data {
         let done = json!({"name": place.to_string(), "address": place.address()});
@@ -229,6 +252,10 @@ fn write(
         true => to_json(&self::as_json(card, &place).map_err(told)?)?,
         false => format!("{place} = 0x{now:08X} = {now}\n"),
     });
+    if let Some(before) = running.filter(|before| *before != value) {
+        let text = period_told(card, &period, before).map_err(told)?;
+        outcome.messages.push(text);
+    }
     if now != value {
         outcome.messages.push(format!(
             "{place}: wrote {value}, reads {now}: the word acts when written, or has bits that do not keep it"

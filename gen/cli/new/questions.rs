@@ -3,6 +3,7 @@
 use crate::board::Board;
 use crate::config::keys::{self, Key, TABLES};
 use crate::config::words::{RECEIVER_BUS, T_FORMAT};
+use crate::form::key::Kind;
 use crate::json_schema::plain;
 use endat_hdl::card::bus::HostBus;
 use std::collections::BTreeMap;
@@ -33,6 +34,8 @@ pub struct Question {
 
 /// In the place of a board: a card that others put into a chip.
 pub const NO_BOARD: &str = "none";
+/// In the place of the words of a list: there are none.
+pub const NOTHING: &str = "none";
 /// Encoder ports unless a board has no room for them.
 const CHANNELS: [usize; 2] = [2, 1];
 /// From here on a clock suits nearly everything.
@@ -194,6 +197,18 @@ pub static QUESTIONS: &[Question] = &[
         usual: |_| numbers(&SAMPLE_HZ),
     },
     Question {
+        name: "trigger-sources",
+        of: Of::Key(&keys::TRIGGER_SOURCES, "trigger"),
+        is_asked: is_card,
+        usual: |_| vec![keys::TRIGGER_SOURCES.words().join(", ")],
+    },
+    Question {
+        name: "service-parts",
+        of: Of::Key(&keys::SERVICE_PARTS, "service"),
+        is_asked: is_endat,
+        usual: |_| vec![NOTHING.into()],
+    },
+    Question {
         name: "baud",
         of: Of::Key(&keys::BAUD, "link"),
         is_asked: has_uart,
@@ -222,6 +237,10 @@ impl Question {
     /// What may be answered.
     pub fn may_be(&self) -> String {
         let all = match self.of {
+            Of::Key(key, _) if key.kind == Kind::Texts => {
+                let all = key.may_be("").replace(", or []", "");
+                format!("{all}; several with commas, or {NOTHING}")
+            }
             Of::Key(key, _) => key.may_be(""),
             // Their table says it.
             Of::Channels => String::new(),

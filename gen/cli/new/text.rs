@@ -1,6 +1,8 @@
 //! The text of a configuration: what was answered, and beside it every key that was not asked for, with what counts without it.
 
-use super::questions::{has_board, has_uart, is_receiver, is_t_format, Answers, Of, QUESTIONS};
+use super::questions::{
+    has_board, has_uart, is_receiver, is_t_format, Answers, Of, NOTHING, QUESTIONS,
+};
 use crate::config::base::takes;
 use crate::config::grouped;
 use crate::config::keys::{
@@ -30,6 +32,11 @@ pub fn literal(of: Of, option: &str, answer: &str) -> Result<String, GenError> {
             let (low, high) = limits.range().into_inner();
             let low = if limits.or_zero() { 0 } else { low };
             number(option, answer, low..=high).map(grouped)
+        }
+        Of::Key(key, _) if key.kind == Kind::Texts => {
+            let words = answer.split([',', ' ']).filter(|word| !word.is_empty());
+            let words = words.filter(|_| answer != NOTHING).map(toml::Value::from);
+            Ok(toml::Value::Array(words.collect()).to_string())
         }
         Of::Key(..) => Ok(toml::Value::from(answer).to_string()),
     }

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 pub struct PlotArgs {
     #[command(flatten)]
     files: FileArgs,
-    /// Write the drawing into this file [default: the name of the recording, with .svg]
+    /// Write the drawing into this file, which ends in .svg [default: the name of the recording, with .svg]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Draw channel 0 minus channel 1, too
@@ -32,6 +32,8 @@ pub struct PlotArgs {
     to: Option<String>,
 }
 
+/// What drawings end in.
+const SUFFIX: &str = "svg";
 /// Longest recording: a time beyond is a slip.
 const SECONDS_MAX: f64 = 1e9;
 
@@ -45,7 +47,16 @@ pub fn run(arguments: &PlotArgs) -> Result<Outcome, GenError> {
         )));
     }
     let path = arguments.out.clone();
-    let path = path.unwrap_or_else(|| arguments.files.files[0].with_extension("svg"));
+    let path = path.unwrap_or_else(|| arguments.files.files[0].with_extension(SUFFIX));
+    let is_drawing_name = path
+        .extension()
+        .is_some_and(|s| s.eq_ignore_ascii_case(SUFFIX));
+    if !is_drawing_name {
+        return Err(GenError::input(format!(
+            "--out = {}: is no name of a drawing, which is SVG; give one that ends in .{SUFFIX} (any browser shows it, Inkscape and others make PNG or PDF of it)",
+            path.display()
+        )));
+    }
     let mut file = File {
         option: "--out",
         path,

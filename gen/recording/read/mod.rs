@@ -5,6 +5,7 @@ mod text;
 
 use super::about::scale_of;
 use super::count::Judge;
+use super::files::is_next;
 use super::layout::DerivedColumn;
 use super::picture::{Counter, Measurement, Seen};
 use crate::error::GenError;
@@ -171,8 +172,15 @@ pub struct Reader {
     /// What a measuring step is; empty if the file does not say.
     scales: Vec<Scale>,
     turns: Vec<TextTurns>,
-    /// Time of the last row of a trigger, of this file only if it has begun anew.
+    /// Times of the last two rows of a trigger.
     last_s: Option<f64>,
+    before_s: Option<f64>,
+    /// The file that was read last.
+    last: Option<PathBuf>,
+    /// A file that may go on behind the last one, does not say when it was begun, and may have a time of its own.
+    follows: bool,
+    /// It was put right behind it.
+    is_closed_up: bool,
     offset_s: f64,
     /// The next row is the first one of its file.
     begins_file: bool,
@@ -239,6 +247,7 @@ impl Reader {
                 "is empty; give a file of `log` or of the live page",
             )));
         }
+        self.follows = (self.last.as_deref()).is_some_and(|last| is_next(path, last));
         let mut is_first = true;
         let mut notes = Vec::new();
         let mut next = |head: &Head, row: Parsed| {
@@ -267,10 +276,14 @@ impl Reader {
         if is_first {
             self.begin(&head).map_err(at)?;
         }
+        if std::mem::take(&mut self.is_closed_up) {
+            notes.push(": does not say when it was begun, and is put right behind the file before it: the pause between is not in any figure; `log --about` lets text say so".into());
+        }
         let notes = notes
             .into_iter()
             .map(|note| format!("{}{note}", path.display()));
         self.notes.extend(notes);
+        self.last = Some(path.to_owned());
         Ok(())
     }
 
@@ -305,11 +318,20 @@ impl Reader {
             )
         })?;
         self.offset_s = since.as_secs_f64();
+        self.follows = false;
         Ok(())
     }
 
     fn measurement(&mut self, row: Parsed) -> Result<Measurement, Wrong> {
-        let time_s = row.time_s + self.offset_s;
+        let mut time_s = row.time_s + self.offset_s;
+        if let (true, true, Some(last)) = (self.begins_file, self.follows, self.last_s) {
+            if time_s < last {
+                let step = last - self.before_s.unwrap_or(last);
+                self.offset_s = last + step - row.time_s;
+                time_s = row.time_s + self.offset_s;
+                self.is_closed_up = true;
+            }
+        }
         if !time_s.is_finite() {
             return Err(Wrong::at(
                 row.line,
@@ -326,11 +348,11 @@ impl Reader {
         if row.trigger.is_some() {
             if let Some(last) = self.last_s.filter(|last| time_s < *last) {
                 let text = format!(
-                    "time_s = {time_s}: is before that of the row before it, {last}: another recording begins here; give files of one recording"
+                    "time_s = {time_s}: is before that of the row before it, {last}: another recording begins here; give files of one recording (text that `log --resume` goes on with needs its number, or --about)"
                 );
                 return Err(Wrong::at(row.line, text));
             }
-            self.last_s = Some(time_s);
+            self.before_s = self.last_s.replace(time_s);
         }
         let mut seen = Vec::with_capacity(row.cells.len());
         let units = self.head.as_ref().map_or(&[][..], |h| &h.units);

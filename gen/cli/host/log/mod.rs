@@ -12,6 +12,7 @@ use crate::number::{decimal_if, number_if};
 use crate::recording::count::{Count, Judge};
 use crate::recording::recorder::Recorder;
 use crate::recording::resume;
+use crate::recording::sheet::Format;
 use endat_host::feed::{Feed, Row};
 use endat_host::{HostError, Transport};
 use endat_regs::Part;
@@ -87,7 +88,8 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         own_triggers: card.identity().has(Part::OwnTrigger),
     };
     let wishes = arguments.wishes(checked, &mut card, judge)?;
-    resume::check(&wishes.target, &wishes.layout)?
+    let says_when = wishes.about_in_text || wishes.format == Format::Parquet;
+    resume::check(&wishes.target, &wishes.layout, says_when)?
         .iter()
         .for_each(|text| say(text));
     let made = arguments.out.as_deref().map(folder).filter(|f| !f.exists());
