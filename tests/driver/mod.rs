@@ -33,6 +33,49 @@ fn the_driver_has_the_map_and_the_texts_of_the_tables() {
     }
 }
 
+/// Catches an error that the page does not have, or has with another text than the driver; and one that Rust does not have.
+#[test]
+fn the_page_has_every_error_with_its_name_in_rust_and_its_text() {
+    let read = |path: &Path| std::fs::read_to_string(path).unwrap();
+    let (header, source) = (read(&home().join("endat.h")), read(&home().join("endat.c")));
+    let rust = read(&home().join("../rust/error.rs"));
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/driver.md");
+    let lines = header.lines().filter_map(|line| {
+        let (name, _) = line.trim().split_once(',')?;
+        name.strip_prefix("ENDAT_ERROR_")
+    });
+    let (_, texts) = source.split_once("texts[ENDAT_ERRORS] = {").unwrap();
+    let (texts, _) = texts.split_once("};").unwrap();
+    let texts = texts
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix('"'));
+    let texts = texts.map(|line| line.trim_end_matches("\",").replace("\\\"", "\""));
+    // The first two are none.
+    let all: Vec<(&str, String)> = lines.zip(texts.skip(2)).collect();
+    assert_eq!(all.len(), 18);
+    let mut table = String::from("| in C | in Rust | what it is: what helps |\n|---|---|---|\n");
+    for (name, text) in all {
+        let capital = |word: &str| word[..1].to_owned() + &word[1..].to_lowercase();
+        let of_rust = match name {
+            "CHECKSUM" => "CheckSum".to_owned(),
+            name => name.split('_').map(capital).collect(),
+        };
+        let is_there = rust.contains(&format!("    {of_rust},\n"))
+            || rust.contains(&format!("    {of_rust} {{\n"))
+            || rust.contains(&format!("    {of_rust}("));
+        assert!(is_there, "{of_rust}");
+        table += &format!("| `ENDAT_ERROR_{name}` | `Error::{of_rust}` | {text} |\n");
+    }
+    let is = read(&page);
+    let (before, rest) = is.split_once("\n## Errors\n\n").unwrap();
+    let (_, behind) = rest.split_once("\nEach has this text").unwrap();
+    let should = format!("{before}\n## Errors\n\n{table}\nEach has this text{behind}");
+    assert!(
+        tools::committed(&page, &should) == should,
+        "docs/driver.md: its errors are not those of the driver; UPDATE_EXPECT=1 renews them"
+    );
+}
+
 /// Catches a call or parameter without a word in its documentation.
 #[test]
 fn doxygen_finds_every_call_documented() {

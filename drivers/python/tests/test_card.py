@@ -267,6 +267,44 @@ def test_a_recording_says_what_was_measured(card: endat.Card, tmp_path: Path) ->
         assert file["time"][-1] == pytest.approx(0.01)
 
 
+#: Rows of an hour at 10 kHz, and of its share that is recorded unless all is asked for (`SUITE_WHOLE`, a quarter of an hour).
+HOUR = 36_000_000
+SHARE = HOUR if "SUITE_WHOLE" in os.environ else 140_000
+HOUR_OF_ROWS = """
+import resource, sys, threading, time, endat
+seen = []
+def look():
+    while True:
+        seen.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+        time.sleep(0.2)
+with endat.connect("load") as card:
+    endat.record(card, sys.argv[1], 20_000)
+    threading.Thread(target=look, daemon=True).start()
+    endat.record(card, sys.argv[1], int(sys.argv[2]), raw=False, replace=True)
+print(seen[0], resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is told in kB there")
+def test_an_hour_without_raw_positions_is_below_300_megabytes_and_whole(tmp_path: Path) -> None:
+    """Catches a file that grows beyond what was promised, a row that is lost, and memory that grows with the rows."""
+    h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
+    path = tmp_path / "hour.h5"
+    told = subprocess.run([sys.executable, "-c", HOUR_OF_ROWS, str(path), str(SHARE)], capture_output=True, text=True, check=True)
+    before, peak = map(int, told.stdout.split())
+    assert peak - before < 30_000, f"{before} kB, then {peak} kB"
+    megabytes = path.stat().st_size * HOUR / SHARE / 1e6
+    assert megabytes < 300, f"{megabytes:.0f} MB"
+    with h5py.File(path) as file:
+        assert len(file["time"]) == SHARE and not np.any(file["missing"])
+        assert np.all(np.diff(file["trigger"]) == 1)
+        one = file["channel1"]
+        assert "raw" not in one and np.all(one["fresh"])
+        # The positions tell what the encoder sent, each step of it.
+        steps = one["position"][:1000] * (2**BITS / 360)
+        assert np.all(steps == np.round(steps))
+
+
 def test_a_disk_that_becomes_full_ends_a_recording_with_a_whole_file(
     card: endat.Card, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

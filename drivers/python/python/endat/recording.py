@@ -23,9 +23,12 @@ _OF_CHANNEL: dict[str, str | None] = {"position": None, "turns": "turns", "raw":
 
 
 class _File:
-    def __init__(self, file: Any, card: Card, compression: str | None) -> None:
+    def __init__(self, file: Any, card: Card, compression: str | None, raw: bool) -> None:
         self.file, self.card, self.compression = file, card, compression
+        self.of_channel = {name: unit for name, unit in _OF_CHANNEL.items() if raw or name != "raw"}
         self.rows = 0
+        #: What has been made, by its name: to look it up in the file for each block takes as long as to write it.
+        self.made: dict[str, Any] = {}
 
     def begin(self, first: Samples) -> None:
         """Names, units and what is known of card and encoders."""
@@ -48,7 +51,7 @@ class _File:
             for name in ("id", "serial", "rotary", "position_bits", "revolutions", "steps"):
                 if plate is not None and getattr(plate, name) is not None:
                     group.attrs[name] = getattr(plate, name)
-            for name, unit in _OF_CHANNEL.items():
+            for name, unit in self.of_channel.items():
                 kind = getattr(one, name).dtype
                 if name == "cause":
                     kind = _enum(kind)
@@ -62,6 +65,7 @@ class _File:
             made.attrs["units"] = unit
         if text:
             made.attrs["description"] = text
+        self.made[made.name] = made
 
     def add(self, block: Samples) -> None:
         left = shutil.disk_usage(os.path.dirname(os.path.abspath(self.file.filename))).free
@@ -72,16 +76,17 @@ class _File:
             )
         end = self.rows + len(block)
 
-        def put(data: Any, values: Any) -> None:
+        def put(name: str, values: Any) -> None:
+            data = self.made["/" + name]
             data.resize((end,))
             data[self.rows : end] = values
 
-        put(self.file["time"], block.time_s)
-        put(self.file["trigger"], block.trigger)
-        put(self.file["missing"], block.missing)
+        put("time", block.time_s)
+        put("trigger", block.trigger)
+        put("missing", block.missing)
         for n, one in enumerate(block.channels):
-            for name in _OF_CHANNEL:
-                put(self.file[f"channel{n}/{name}"], getattr(one, name))
+            for name in self.of_channel:
+                put(f"channel{n}/{name}", getattr(one, name))
         self.rows = end
         # What is there is there, whatever happens then.
         self.file.flush()
@@ -102,11 +107,13 @@ def record(
     poll: bool = False,
     replace: bool = False,
     compression: str | None = "lzf",
+    raw: bool = True,
 ) -> int:
     """Records into an HDF5 file (needs ``h5py``) until ``count`` rows, or ``seconds`` of the card's time, are in it; returns the rows.
 
     A disk that becomes full ends it with an :class:`EndatError` while there is still room for a whole file. Without either it goes on until Ctrl-C, which ends it with a whole file. Rows are written as they come, so memory stays constant.
-    ``compression``: ``lzf`` is fast, ``gzip`` is smaller and read by everything, ``None``.
+    ``compression``: ``lzf`` is fast, ``gzip`` is smaller and read by everything, ``None``. ``raw=False`` leaves the positions as the encoder
+    sent them out, which are a third of a file: position in units and turns tell them.
     """
     import h5py
 
@@ -117,7 +124,7 @@ def record(
         block: Samples | None = next(blocks)
         assert block is not None
         with h5py.File(path, "w") as file:
-            to = _File(file, card, compression)
+            to = _File(file, card, compression, raw)
             to.begin(block)
             try:
                 while block is not None:
