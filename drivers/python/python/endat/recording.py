@@ -111,7 +111,7 @@ def record(
 ) -> int:
     """Records into an HDF5 file (needs ``h5py``) until ``count`` rows, or ``seconds`` of the card's time, are in it; returns the rows.
 
-    A disk that becomes full ends it with an :class:`EndatError` while there is still room for a whole file. Without either it goes on until Ctrl-C, which ends it with a whole file. Rows are written as they come: memory grows with the index of the file only, some 3 MB in a million rows.
+    A disk that becomes full ends it with an :class:`EndatError` while there is still room for a whole file. Without either it goes on until Ctrl-C, which ends it with a whole file. Rows are written as they come; memory grows by some 3 MB in a million of them.
     ``compression``: ``lzf`` is fast, ``gzip`` is smaller and read by everything, ``None``. ``raw=False`` leaves the positions as the encoder
     sent them out, which are a third of a file: position in units and turns tell them.
     """
