@@ -145,7 +145,7 @@ fn what_the_block_design_cannot_do_is_refused() {
     if !require("tclsh", "block design") {
         return;
     }
-    let third = "[[channel]]\nposition_bits = 13\n";
+    let third = "[[channel]]\nposition_bits = 13\ncommand = \"000111\"\n";
     for (setup, wanted) in [
         (Setup { more: third, ..USUAL }, "endat_clk2_o has no pin here: write one behind it in the list of axi_lite_card_zynq.tcl"),
         (Setup { made_mhz: "99.999", ..USUAL }, "FCLK_CLK0 = 99.999 MHz: the processor's dividers do not make 100 MHz; give clock.system_hz a rate that they make"),
