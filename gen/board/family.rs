@@ -60,6 +60,25 @@ pub struct Build {
     pub bitstream: String,
     /// Command that installs the tools.
     pub install: String,
+    /// How its result is read back, if it can be.
+    pub read_back: Option<ReadBack>,
+}
+
+/// How what open tools have made of a card becomes Verilog again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReadBack {
+    /// The bitstream, with IceStorm.
+    Icestorm,
+    /// The placed and routed netlist that nextpnr writes for an ECP5 (`--write {{ name }}_placed.json`).
+    Ecp5Netlist,
+}
+
+impl ReadBack {
+    /// Each with its name in a family's file.
+    const NAMES: [(Self, &'static str); 2] = [
+        (Self::Icestorm, "icestorm"),
+        (Self::Ecp5Netlist, "ecp5_netlist"),
+    ];
 }
 
 /// How the vendor's tool makes a bitstream. Words are templates as those of [`Build`].
@@ -373,6 +392,20 @@ fn read_build(table: &Table<'_, '_>) -> Option<Build> {
     let install = table.required_string(&keys::INSTALL);
     let place = command(table, &keys::PLACE, &|tool| tool.starts_with("nextpnr-"));
     let pack = command(table, &keys::PACK, &|tool| tool.ends_with("pack"));
+    let read_back = table.string(&keys::READ_BACK).map(|at| {
+        let known = ReadBack::NAMES.iter().find(|(_, name)| *name == at.value);
+        if known.is_none() {
+            let names = ReadBack::NAMES.map(|(_, name)| name).join(", ");
+            let text = format!("is no way to read a result back; known ways: {names}");
+            table.complain(
+                at.line,
+                keys::READ_BACK.name,
+                &format!("{:?}", at.value),
+                &text,
+            );
+        }
+        known.map(|(way, _)| *way)
+    });
     table.finish();
     let synthesis = synthesis?;
     let plain = |c: char| c.is_ascii_alphanumeric() || " _-".contains(c);
@@ -392,6 +425,7 @@ fn read_build(table: &Table<'_, '_>) -> Option<Build> {
         pack: pack?,
         bitstream: bitstream?.value,
         install: install?.value,
+        read_back: left_out_or_good(read_back)?,
     })
 }
 

@@ -94,7 +94,14 @@ pub fn measure(name: Option<&str>) -> Result<Outcome, GenError> {
         };
         let project = shipped_card(board)?;
         let artifacts = crate::emit(&project)?;
-        let built = bitstream::build(&project, board, build, &artifacts, SEEDS, &mut begin);
+        let built = bitstream::build(
+            &project,
+            board,
+            build,
+            &artifacts,
+            (SEEDS, None),
+            &mut begin,
+        );
         let report = match built {
             Ok((report, _)) => report,
             // The others are as good as before.

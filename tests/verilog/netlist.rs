@@ -1,10 +1,10 @@
 //! The card synthesised for every family: it can be, its synchronisers stay flip-flops, and the netlists do what the RTL does.
 
-use super::{area::require, compile, is_core, name_of, quick_files, write};
+use super::{area::require, is_core, name_of, quick_files, write};
 use crate::passed::Check;
 use crate::tools;
 use endat_gen::area::{self, Family, Synthesis, ECP5, GOWIN, ICE40, XC6S, XC7};
-use endat_gen::artifact::Artifact;
+use endat_gen::bitstream::replay::{self, Pins};
 use endat_gen::config::DEFAULT_PRESET;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -33,7 +33,11 @@ fn xc6s() -> &'static Synthesis {
 /// What of a family is decided by the card and by who synthesises it and plays to it.
 fn seen(family: &Family, what: &str) -> Check {
     let check = Check::new(format!("{what} for {}", family.name)).files(quick_files());
-    check.source("gen/area").source("tests/verilog/netlist.rs")
+    check.sources(&[
+        "gen/area",
+        "gen/bitstream/replay.rs",
+        "tests/verilog/netlist.rs",
+    ])
 }
 
 fn has_flip_flops(synthesis: &Synthesis) {
@@ -115,9 +119,9 @@ fn synchronisers_stay() {
 const CYCLES: usize = 60_000;
 
 /// Pins of the card, inputs and outputs, without the clock.
-fn pins() -> (Vec<String>, Vec<String>) {
-    let mut inputs = vec!["rst_i".into(), "trigger_i".into(), "uart_rx_i".into()];
-    let mut outputs = vec!["uart_tx_o".into(), "led_status_o".into()];
+fn pins() -> Pins {
+    let mut inputs: Vec<String> = vec!["rst_i".into(), "trigger_i".into(), "uart_rx_i".into()];
+    let mut outputs: Vec<String> = vec!["uart_tx_o".into(), "led_status_o".into()];
     for n in 0..2 {
         inputs.push(format!("endat_data{n}_i"));
         for end in ["clk{n}_o", "data{n}_o", "data{n}_oe"] {
@@ -125,123 +129,29 @@ fn pins() -> (Vec<String>, Vec<String>) {
         }
         outputs.push(format!("led_channel{n}_o"));
     }
-    (inputs, outputs)
+    Pins { inputs, outputs }
 }
 
-/// A module that records, beside a card's own bench, what goes into the card and what it makes of it: a line for each of so many cycles.
-fn recorder(card: &str, inputs: &[String], outputs: &[String], cycles: usize) -> String {
-    let joined = |names: &[String]| {
-        let pins = names.iter().rev();
-        let pins: Vec<String> = pins.map(|name| format!("{card}_tb.dut.{name}")).collect();
-        pins.join(", ")
-    };
-    format!(
-        "`timescale 1ns / 1ps
-module recorder;
-    integer file, cycle;
-    initial begin file = $fopen(\"recording.txt\"); cycle = 0; end
-    // Values just before the edge: nothing has moved yet.
-    always @(posedge {card}_tb.clk) begin
-        $fwrite(file, \"%b%b\\n\", {{{}}}, {{{}}});
-        cycle = cycle + 1;
-        if (cycle == {cycles}) begin $fclose(file); $finish; end
-    end
-endmodule
-",
-        joined(outputs),
-        joined(inputs)
-    )
-}
-
-/// Ports of an instance, connected to the bits of a vector.
-fn connections(names: &[String], vector: &str) -> String {
-    let names = names.iter().enumerate();
-    names
-        .map(|(k, name)| format!(", .{name}({vector}[{k}])"))
-        .collect()
-}
-
-/// Stimulus and outputs of a card, one line a cycle, recorded while it runs in its own test bench.
-pub fn record(
-    test: &str,
-    emission: &[Artifact],
-    inputs: &[String],
-    outputs: &[String],
-    cycles: usize,
-) -> String {
-    let (folder, mut files) = write(test, emission);
-    let card = name_of(emission);
-    let text = recorder(card, inputs, outputs, cycles);
-    fs::write(folder.join("recorder.v"), text).unwrap();
-    let bench = format!("{card}_tb");
-    files.extend([format!("{bench}.v"), "recorder.v".into()]);
-    compile(&folder, "recorder", &files, &["-s", &bench]);
-    let (good, text) = tools::run("vvp", &folder, &["-n", "sim.vvp"]);
-    assert!(
-        good && !text.contains("FAIL"),
-        "{}: {text}",
-        folder.display()
-    );
-    fs::read_to_string(folder.join("recording.txt")).unwrap()
+/// Stimulus and outputs of the quick card, one line a cycle, recorded while it runs in its own test bench.
+fn record() -> String {
+    let (folder, mut files) = write("recorder", quick_files());
+    let card = name_of(quick_files());
+    files.push(format!("{card}_tb.v"));
+    replay::record(&folder, &card, &files, &pins(), &|_| false, CYCLES).unwrap()
 }
 
 /// The recording of the quick card.
 fn recording() -> &'static str {
     static TEXT: OnceLock<String> = OnceLock::new();
-    TEXT.get_or_init(|| {
-        let (inputs, outputs) = pins();
-        record("recorder", quick_files(), &inputs, &outputs, CYCLES)
-    })
+    TEXT.get_or_init(record)
 }
 
 /// The frames are in a recording: all outputs move but those that stand still for so long.
-pub fn assert_outputs_move(recording: &str, outputs: &[String], is_still: fn(&str) -> bool) {
+fn assert_outputs_move(recording: &str, outputs: &[String], is_still: fn(&str) -> bool) {
     for (place, name) in outputs.iter().rev().enumerate() {
         let bits: BTreeSet<u8> = recording.lines().map(|l| l.as_bytes()[place]).collect();
         assert!(bits.len() == 2 || is_still(name), "{name} does not move");
     }
-}
-
-/// A bench that plays a recording to a module and compares all outputs before every clock edge; `instance` is the module with its
-/// clock, `clk`, connected.
-fn player(instance: &str, inputs: &[String], outputs: &[String], cycles: usize) -> String {
-    let (i, o) = (inputs.len(), outputs.len());
-    format!(
-        "`timescale 1ns / 1ps
-module player;
-    reg [{row_top}:0] recording [0:{last}];
-    reg clk;
-    reg [{i_top}:0] in;
-    reg [{o_top}:0] want;
-    wire [{o_top}:0] out;
-    integer cycle;
-    {instance}{ins}{outs});
-    initial begin
-        $readmemb(\"recording.txt\", recording);
-        clk = 1'b0;
-        for (cycle = 0; cycle <= {last}; cycle = cycle + 1) begin
-            {{want, in}} = recording[cycle];
-            #5;
-            if (out !== want) begin
-                $display(\"cycle %0d: %b instead of %b\", cycle, out, want);
-                $finish;
-            end
-            clk = 1'b1;
-            #5;
-            clk = 1'b0;
-        end
-        $display(\"PASS\");
-        $finish;
-    end
-endmodule
-",
-        row_top = i + o - 1,
-        i_top = i - 1,
-        o_top = o - 1,
-        last = cycles - 1,
-        ins = connections(inputs, "in"),
-        outs = connections(outputs, "out"),
-    )
 }
 
 /// The folder of Debian's yosys' own files: where yosys itself looks for them, beside its program. Its cell models are the
@@ -257,7 +167,7 @@ fn share() -> PathBuf {
 }
 
 /// What iverilog is told to read the models of a family's cells, by their folder.
-pub fn cell_models(family: &str) -> [String; 3] {
+fn cell_models(family: &str) -> [String; 3] {
     let folder = share().join(family);
     [
         "-DNO_ICE40_DEFAULT_ASSIGNMENTS".to_owned(),
@@ -266,36 +176,17 @@ pub fn cell_models(family: &str) -> [String; 3] {
     ]
 }
 
-/// Plays a recording to a module of these files; what the player says. `instance` is that of [`player`].
-pub fn play(
-    test: &str,
-    recording: &str,
-    instance: &str,
-    (inputs, outputs): (&[String], &[String]),
-    files: &[(&str, &str)],
-    options: &[String],
-) -> String {
-    let folder = tools::folder(&format!("gate-{test}"));
-    fs::write(folder.join("recording.txt"), recording).unwrap();
-    let text = player(instance, inputs, outputs, recording.lines().count());
-    fs::write(folder.join("player.v"), text).unwrap();
-    let mut arguments = vec!["-g2005", "-o", "sim.vvp", "-s", "player", "player.v"];
-    for (file, text) in files {
-        fs::write(folder.join(file), text).unwrap();
-        arguments.push(file);
-    }
-    arguments.extend(options.iter().map(String::as_str));
-    let (good, text) = tools::run("iverilog", &folder, &arguments);
-    assert!(good, "{}: {text}", folder.display());
-    tools::run("vvp", &folder, &["-n", "sim.vvp"]).1
-}
-
 /// Plays a recording of the quick card.
 fn play_card(test: &str, recording: &str, card: &[(&str, &str)], options: &[String]) -> String {
-    let (inputs, outputs) = pins();
+    let folder = tools::folder(&format!("gate-{test}"));
+    let mut files = Vec::new();
+    for (file, text) in card {
+        fs::write(folder.join(file), text).unwrap();
+        files.push(*file);
+    }
+    files.extend(options.iter().map(String::as_str));
     let instance = format!("{DEFAULT_PRESET} dut (.clk_i(clk)");
-    let pins = (&inputs[..], &outputs[..]);
-    play(test, recording, &instance, pins, card, options)
+    replay::play(&folder, recording, &instance, &pins(), &files).unwrap()
 }
 
 /// The recording played back to the RTL: equal as it stands, and one wrong bit in the last cycle is noticed.
@@ -307,7 +198,7 @@ fn player_compares_every_cycle() {
     let core = quick_files().iter().filter(|f| is_core(f));
     let card: Vec<_> = core.map(|f| (f.path.as_str(), f.text.as_str())).collect();
     assert_eq!(recording().lines().count(), CYCLES);
-    assert_eq!(play_card("rtl", recording(), &card, &[]), "PASS\n");
+    assert_eq!(play_card("rtl", recording(), &card, &[]), replay::SAME);
     let (first, last) = recording().trim_end().rsplit_once('\n').unwrap();
     let flipped = if last.starts_with('0') { "1" } else { "0" };
     let spoilt = format!("{first}\n{flipped}{}\n", &last[1..]);
@@ -317,8 +208,7 @@ fn player_compares_every_cycle() {
         "{said}"
     );
     // Clocks, drivers and lights of both channels move.
-    let (_, outputs) = pins();
-    assert_outputs_move(recording(), &outputs, |name| name == "led_status_o");
+    assert_outputs_move(recording(), &pins().outputs, |name| name == "led_status_o");
 }
 
 fn gate_level(family: &Family) {
@@ -342,7 +232,7 @@ fn netlist_equals(family: &Family) {
     let netlist = fs::read_to_string(&synthesis.verilog).unwrap();
     let card = [("netlist.v", netlist.as_str())];
     let said = play_card(family.name, recording(), &card, &options);
-    assert_eq!(said, "PASS\n");
+    assert_eq!(said, replay::SAME);
 }
 
 #[test]

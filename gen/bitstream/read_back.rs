@@ -1,0 +1,273 @@
+//! What open tools have made of a card, read back as Verilog and compared with the card it was made of.
+
+use super::replay::{self, write, Pins};
+use super::run;
+use crate::artifact::Artifact;
+use crate::board::{Assignment, Board, Build, Kind, ReadBack, OSCILLATOR_PORT};
+use crate::config::Project;
+use crate::error::GenError;
+use crate::readers::is_bench;
+use crate::scratch;
+use serde::Serialize;
+use serde_json::{json, Value};
+use std::fmt;
+use std::path::Path;
+
+/// Cycles that are compared, from power-up on: host commands, a frame that measures the delay, frames at the configured clock.
+pub const CYCLES: usize = 60_000;
+/// What is kept of the best seed for a netlist that is read.
+const PLACED: &str = "best_placed.json";
+/// The device as plain Verilog.
+const DEVICE: &str = "device.v";
+/// What installs the reader of iCE40 bitstreams.
+const ICESTORM: &str = "apt install fpga-icestorm";
+
+/// The first pin that is not as the card has it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Difference {
+    /// Cycle, from power-up on.
+    pub cycle: usize,
+    /// The pins, with what the device says of each.
+    pub pins: Vec<String>,
+}
+
+/// What came of a comparison.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Comparison {
+    /// What was read.
+    pub of: &'static str,
+    /// Cycles that were compared, at most.
+    pub cycles: usize,
+    /// Where they part, if they do.
+    pub difference: Option<Difference>,
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.difference {
+            None => writeln!(
+                f,
+                "read back: the {} does what the card does, on every pin in each of {} cycles",
+                self.of, self.cycles
+            ),
+            Some(d) => writeln!(
+                f,
+                "read back: the {} is NOT the card: in cycle {} {}",
+                self.of,
+                d.cycle,
+                d.pins.join(", ")
+            ),
+        }
+    }
+}
+
+/// How a board's result is read back; an error before anything is built if it cannot be.
+pub fn way(project: &Project, board: &Board, build: &Build) -> Result<ReadBack, GenError> {
+    let wrong = |what: String| Err(GenError::input(format!("--simulate: {what}; leave it out")));
+    if let Some(pin) = project.pins.iter().find(|p| p.kind == Kind::BusData) {
+        return wrong(format!(
+            "{} goes both ways, and what is compared are pins that go one way",
+            pin.signal
+        ));
+    }
+    match build.read_back {
+        Some(way) => Ok(way),
+        None => wrong(format!(
+            "what open tools make for {} cannot be read back, its family.toml has no read_back",
+            board.family.title
+        )),
+    }
+}
+
+/// Pins of a card, without the oscillator.
+fn pins(project: &Project) -> Pins {
+    let names = |is_input: bool| {
+        let pins = project.pins.iter().filter(|p| p.kind != Kind::Oscillator);
+        let pins = pins.filter(|p| p.kind.is_input() == is_input);
+        pins.map(|p| p.signal.clone()).collect()
+    };
+    Pins {
+        inputs: names(true),
+        outputs: names(false),
+    }
+}
+
+/// Keeps what is read of the seed that was just placed.
+pub(super) fn keep(folder: &Path, name: &str, way: ReadBack) -> Result<(), GenError> {
+    if way == ReadBack::Ecp5Netlist {
+        let path = folder.join(format!("{name}_placed.json"));
+        std::fs::copy(&path, folder.join(PLACED)).map_err(|e| {
+            let remedy = "let `place` in the family's file write it";
+            GenError::io("read", &path, &e, remedy)
+        })?;
+    }
+    Ok(())
+}
+
+/// Compares what is in the folder of a build with the card.
+pub(super) fn compare(
+    folder: &Path,
+    (project, build, way): (&Project, &Build, ReadBack),
+    artifacts: &[Artifact],
+    bitstream: &str,
+) -> Result<Comparison, GenError> {
+    let pins = pins(project);
+    let name = project.name.as_str();
+    let is_low = |signal: &str| {
+        let pin = project.pins.iter().find(|pin| pin.signal == signal);
+        let low = project.board.as_ref().map(|board| &board.low_active);
+        // Lights that shine when they are low are inverted in the board top.
+        pin.is_some_and(|p| p.kind == Kind::Led && low.is_some_and(|low| low.contains(&p.pin)))
+    };
+    let verilog = artifacts.iter().filter(|a| a.path.ends_with(".v"));
+    let top = format!("{name}_top.v");
+    let verilog = verilog.filter(|a| a.path != top && (!is_bench(a) || a.path.ends_with("_tb.v")));
+    let verilog: Vec<String> = verilog.map(|a| a.path.clone()).collect();
+    let recording = replay::record(folder, name, &verilog, &pins, &is_low, CYCLES)?;
+    let top = match way {
+        ReadBack::Icestorm => icestorm(folder, project, build, bitstream)?,
+        ReadBack::Ecp5Netlist => ecp5_netlist(folder, build)?,
+    };
+    let instance = format!("{top} dut (.{OSCILLATOR_PORT}(clk)");
+    let said = replay::play(folder, &recording, &instance, &pins, &[DEVICE])?;
+    let of = match way {
+        ReadBack::Icestorm => "bitstream",
+        ReadBack::Ecp5Netlist => "placed and routed netlist",
+    };
+    Ok(Comparison {
+        of,
+        cycles: recording.lines().count(),
+        difference: difference(&said, &pins)?,
+    })
+}
+
+/// What the player's words mean.
+fn difference(said: &str, pins: &Pins) -> Result<Option<Difference>, GenError> {
+    if said == replay::SAME {
+        return Ok(None);
+    }
+    let read = || {
+        let (cycle, values) = said.strip_prefix("cycle ")?.split_once(": ")?;
+        let (got, want) = values.trim().split_once(" instead of ")?;
+        // The last output comes first.
+        let values = got.chars().rev().zip(want.chars().rev());
+        let pins = pins.outputs.iter().zip(values);
+        let pins = pins.filter(|(_, (got, want))| got != want);
+        let pins = pins.map(|(pin, (got, want))| format!("{pin} = {got} instead of {want}"));
+        Some(Difference {
+            cycle: cycle.parse().ok()?,
+            pins: pins.collect(),
+        })
+    };
+    let found = read().ok_or_else(|| GenError::fault("simulation of what was read back", &said));
+    found.map(Some)
+}
+
+/// Reads the bitstream of an iCE40; returns the name of its module.
+fn icestorm(
+    folder: &Path,
+    project: &Project,
+    build: &Build,
+    bitstream: &str,
+) -> Result<&'static str, GenError> {
+    // Names of pins as the constraints have them, without what else stands there.
+    let place = |pin: &Assignment| format!("set_io {} {}\n", pin.signal, pin.pin);
+    let places: String = project.pins.iter().map(place).collect();
+    write(folder, "pins.pcf", &places)?;
+    let words = |text: &[&str]| text.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
+    run(
+        folder,
+        &words(&["iceunpack", bitstream, "chip.asc"]),
+        ICESTORM,
+    )?;
+    let read = words(&[
+        "icebox_vlog",
+        "-s",
+        "-S",
+        "-p",
+        "pins.pcf",
+        "-n",
+        "chip",
+        "chip.asc",
+    ]);
+    let chip = run(folder, &read, ICESTORM)?.stdout;
+    let clock = chip.replace("SB_PLL40_CORE #(", "clock_stand_in #(");
+    let chip = clock.replace("SB_PLL40_PAD #(", "clock_stand_in #(");
+    write(folder, "chip.v", &chip)?;
+    write(folder, "models.v", include_str!("read_back/ice40.v"))?;
+    let read = "read_verilog -D ICE40_HX -D NO_ICE40_DEFAULT_ASSIGNMENTS +/ice40/cells_sim.v; read_verilog models.v chip.v";
+    flatten(folder, build, read, "chip")
+}
+
+/// Reads the netlist that nextpnr has written of an ECP5; returns the name of its module.
+fn ecp5_netlist(folder: &Path, build: &Build) -> Result<&'static str, GenError> {
+    let text = scratch::read(&folder.join(PLACED))?;
+    let fault = |e: &dyn fmt::Display| GenError::fault("netlist of nextpnr", e);
+    let mut netlist: Value = serde_json::from_str(&text).map_err(|e| fault(&e))?;
+    let cells = netlist["modules"]["top"]["cells"].as_object_mut();
+    let cells = cells.ok_or_else(|| fault(&"it has no module top"))?;
+    for cell in cells.values_mut() {
+        // What is not connected: an input of a table is high in the device, a reset is low.
+        let (pins, value): (&[&str], _) = match cell["type"].as_str() {
+            Some("TRELLIS_FF") => (&["LSR"], "0"),
+            Some("TRELLIS_COMB") => (&["A", "B", "C", "D"], "1"),
+            _ => continue,
+        };
+        for pin in pins {
+            if cell["connections"][pin]
+                .as_array()
+                .is_none_or(Vec::is_empty)
+            {
+                cell["connections"][pin] = json!([value]);
+                cell["port_directions"][pin] = json!("input");
+            }
+        }
+    }
+    write(folder, "netlist.json", &netlist.to_string())?;
+    write(folder, "models.v", include_str!("read_back/ecp5.v"))?;
+    let read = "read_json netlist.json; read_verilog -overwrite models.v";
+    flatten(folder, build, read, "top")
+}
+
+/// Makes plain Verilog of what was read and of models of its cells.
+fn flatten(
+    folder: &Path,
+    build: &Build,
+    read: &str,
+    top: &'static str,
+) -> Result<&'static str, GenError> {
+    // Behind a reset a channel is quiet for 30 ms, which are millions of cycles: the registers of the reset, the only ones with an
+    // asynchronous one, begin as they are when it is over, and the card by the start values of its registers, as in its bench.
+    let after = |set: char, over: char| {
+        format!("setattr -set init 1'{over} t:$adff t:$adffe %u r:ARST_VALUE=1'{set} %i %co1:+[Q] w:* %i")
+    };
+    let script = format!(
+        "{read}; hierarchy -top {top}; proc; flatten; setundef -zero -undriven; opt_clean; select -assert-min 1 t:$adff t:$adffe; {}; {}; write_verilog -noattr {DEVICE}",
+        after('1', '0'),
+        after('0', '1')
+    );
+    let words = ["yosys", "-q", "-p", &script].map(str::to_owned);
+    run(folder, &words, &build.install)?;
+    Ok(top)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_names_its_cycle_and_pins() {
+        let pins = Pins {
+            inputs: vec!["i".into()],
+            outputs: ["a", "b", "c"].map(str::to_owned).to_vec(),
+        };
+        assert_eq!(difference("PASS\n", &pins).unwrap(), None);
+        let told = difference("cycle 7: 0x1 instead of 001\n", &pins).unwrap();
+        let wanted = Difference {
+            cycle: 7,
+            pins: vec!["b = x instead of 0".into()],
+        };
+        assert_eq!(told, Some(wanted));
+        assert!(difference("", &pins).is_err());
+    }
+}
