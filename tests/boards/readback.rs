@@ -16,7 +16,7 @@ fn spoilt_reader(dir: &Dir) -> String {
     fs::create_dir_all(dir.0.join("bin")).unwrap();
     let path = std::env::var("PATH").unwrap();
     let text = format!(
-        "#!/bin/sh\nPATH='{path}' icebox_vlog \"$@\" | sed 's/^assign endat_clk0_o = /&!/'\n"
+        "#!/bin/sh\nPATH='{path}' icebox_vlog \"$@\" | sed 's/assign endat_clk0_o = /&!/'\n"
     );
     let file = dir.write("bin/icebox_vlog", text.as_bytes());
     fs::set_permissions(file, fs::Permissions::from_mode(0o755)).unwrap();

@@ -137,7 +137,7 @@ fn record() -> String {
     let (folder, mut files) = write("recorder", quick_files());
     let card = name_of(quick_files());
     files.push(format!("{card}_tb.v"));
-    replay::record(&folder, &card, &files, &pins(), &|_| false, CYCLES).unwrap()
+    replay::record(&folder, card, &files, &pins(), &|_| false, CYCLES).unwrap()
 }
 
 /// The recording of the quick card.
