@@ -241,8 +241,9 @@ fn flatten(
     let after = |set: char, over: char| {
         format!("setattr -set init 1'{over} t:$adff t:$adffe %u r:ARST_VALUE=1'{set} %i %co1:+[Q] w:* %i")
     };
+    // Memories are taken together before what is undefined becomes 0: an enable of a read port among it.
     let script = format!(
-        "{read}; hierarchy -top {top}; proc; flatten; setundef -zero -undriven; opt_clean; select -assert-min 1 t:$adff t:$adffe; {}; {}; write_verilog -noattr {DEVICE}",
+        "{read}; hierarchy -top {top}; proc; flatten; memory_collect; setundef -zero -undriven; opt_clean; select -assert-min 1 t:$adff t:$adffe; {}; {}; write_verilog -noattr {DEVICE}",
         after('1', '0'),
         after('0', '1')
     );
