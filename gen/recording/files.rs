@@ -45,39 +45,35 @@ pub fn numbered(path: &Path, number: u32) -> PathBuf {
     path.with_file_name(format!("{stem}-{number:0DIGITS$}{suffix}"))
 }
 
+/// The name without a number and the number, of a file that has one.
+fn unnumbered(path: &Path) -> Option<(PathBuf, u32)> {
+    let stem = path.file_stem()?.to_string_lossy();
+    let (name, digits) = stem.rsplit_once('-')?;
+    let number = Some(digits).filter(|d| d.len() >= DIGITS)?.parse().ok()?;
+    let mut plain = path.with_file_name(name);
+    if let Some(suffix) = path.extension() {
+        plain.as_mut_os_string().push(".");
+        plain.as_mut_os_string().push(suffix);
+    }
+    Some((plain, number))
+}
+
 /// The highest number that is there; 0 if there is none.
 pub fn highest(path: &Path) -> u32 {
-    let (stem, suffix) = (path.file_stem().unwrap_or_default(), path.extension());
-    let stem = format!("{}-", stem.to_string_lossy());
+    let name = |path: &Path| Some(path.file_name()?.to_string_lossy().into_owned());
     let entries = fs::read_dir(folder(path)).into_iter().flatten().flatten();
     let numbers = entries.filter_map(|entry| {
-        let found = PathBuf::from(entry.file_name());
-        let is_kind = found.extension() == suffix;
-        let found = found.file_stem()?.to_string_lossy().into_owned();
-        let digits = found
-            .strip_prefix(&stem)
-            .filter(|d| is_kind && d.len() >= DIGITS)?;
-        digits.parse::<u32>().ok()
+        let (plain, number) = unnumbered(&entry.path())?;
+        (name(&plain) == name(path)).then_some(number)
     });
     numbers.max().unwrap_or(0)
 }
 
 /// Whether a file is the one of the next number behind another one of the same recording.
 pub fn is_next(path: &Path, before: &Path) -> bool {
-    let stem = before.file_stem().unwrap_or_default().to_string_lossy();
-    let number = stem.rsplit_once('-').and_then(|(name, digits)| {
-        let digits = Some(digits).filter(|d| d.len() >= DIGITS)?;
-        Some((name.to_owned(), digits.parse::<u32>().ok()?))
-    });
-    number.is_some_and(|(name, number)| {
-        let mut plain = before.with_file_name(name);
-        if let Some(suffix) = before.extension() {
-            plain.as_mut_os_string().push(".");
-            plain.as_mut_os_string().push(suffix);
-        }
-        number
-            .checked_add(1)
-            .is_some_and(|n| numbered(&plain, n) == path)
+    unnumbered(before).is_some_and(|(plain, number)| {
+        let next = number.checked_add(1);
+        next.is_some_and(|next| numbered(&plain, next) == path)
     })
 }
 
