@@ -301,7 +301,7 @@ pub fn build(
     let mut report = Report::new(project, board, tried, best, bitstream);
     if let Some(way) = way_back {
         progress(format!("{name}: read back, {CYCLES} cycles"));
-        let what = (project, build, way);
+        let what = (project, board, build, way);
         report.read_back = Some(read_back::compare(
             folder,
             what,

@@ -95,8 +95,7 @@ fn shared_outputs(project: &Project) -> impl Iterator<Item = &str> {
 
 /// Lights whose pin is low while they shine.
 fn inverted<'p>(project: &'p Project, board: &Board) -> Vec<&'p str> {
-    let lights = project.pins.iter().filter(|pin| pin.kind == Kind::Led);
-    let low = lights.filter(|pin| board.low_active.contains(&pin.pin));
+    let low = project.pins.iter().filter(|pin| board.inverts(pin));
     low.map(|pin| pin.signal.as_str()).collect()
 }
 

@@ -1,12 +1,12 @@
 //! What open tools have made of a card, read back as Verilog and compared with the card it was made of.
 
-use super::replay::{self, write, Pins};
+use super::replay::{self, Pins};
 use super::run;
-use crate::artifact::Artifact;
+use crate::artifact::{self, Artifact};
 use crate::board::{Assignment, Board, Build, Kind, ReadBack, OSCILLATOR_PORT};
 use crate::config::Project;
 use crate::error::GenError;
-use crate::readers::is_bench;
+use crate::readers::{is_bench, is_core};
 use crate::scratch;
 use serde::Serialize;
 use serde_json::{json, Value};
@@ -19,6 +19,10 @@ pub const CYCLES: usize = 60_000;
 const PLACED: &str = "best_placed.json";
 /// The device as plain Verilog.
 const DEVICE: &str = "device.v";
+/// The module that icebox_vlog writes.
+const CHIP: &str = "chip";
+/// The module that nextpnr writes.
+const NETLIST: &str = "top";
 /// What installs the reader of iCE40 bitstreams.
 const ICESTORM: &str = "apt install fpga-icestorm";
 
@@ -107,33 +111,32 @@ pub(super) fn keep(folder: &Path, name: &str, way: ReadBack) -> Result<(), GenEr
 /// Compares what is in the folder of a build with the card.
 pub(super) fn compare(
     folder: &Path,
-    (project, build, way): (&Project, &Build, ReadBack),
+    (project, board, build, way): (&Project, &Board, &Build, ReadBack),
     artifacts: &[Artifact],
     bitstream: &str,
 ) -> Result<Comparison, GenError> {
     let pins = pins(project);
     let name = project.name.as_str();
+    // Lights that shine when they are low are inverted in the board top.
     let is_low = |signal: &str| {
         let pin = project.pins.iter().find(|pin| pin.signal == signal);
-        let low = project.board.as_ref().map(|board| &board.low_active);
-        // Lights that shine when they are low are inverted in the board top.
-        pin.is_some_and(|p| p.kind == Kind::Led && low.is_some_and(|low| low.contains(&p.pin)))
+        pin.is_some_and(|pin| board.inverts(pin))
     };
-    let verilog = artifacts.iter().filter(|a| a.path.ends_with(".v"));
-    let top = format!("{name}_top.v");
-    let verilog = verilog.filter(|a| a.path != top && (!is_bench(a) || a.path.ends_with("_tb.v")));
+    let verilog = artifacts.iter().filter(|a| is_core(a) || is_bench(a));
     let verilog: Vec<String> = verilog.map(|a| a.path.clone()).collect();
     let recording = replay::record(folder, name, &verilog, &pins, &is_low, CYCLES)?;
-    let top = match way {
-        ReadBack::Icestorm => icestorm(folder, project, build, bitstream)?,
-        ReadBack::Ecp5Netlist => ecp5_netlist(folder, build)?,
+    let (of, top) = match way {
+        ReadBack::Icestorm => {
+            icestorm(folder, project, build, bitstream)?;
+            ("bitstream", CHIP)
+        }
+        ReadBack::Ecp5Netlist => {
+            ecp5_netlist(folder, build)?;
+            ("placed and routed netlist", NETLIST)
+        }
     };
     let instance = format!("{top} dut (.{OSCILLATOR_PORT}(clk)");
     let said = replay::play(folder, &recording, &instance, &pins, &[DEVICE])?;
-    let of = match way {
-        ReadBack::Icestorm => "bitstream",
-        ReadBack::Ecp5Netlist => "placed and routed netlist",
-    };
     Ok(Comparison {
         of,
         cycles: recording.lines().count(),
@@ -163,17 +166,21 @@ fn difference(said: &str, pins: &Pins) -> Result<Option<Difference>, GenError> {
     found.map(Some)
 }
 
-/// Reads the bitstream of an iCE40; returns the name of its module.
+/// Reads the bitstream of an iCE40.
 fn icestorm(
     folder: &Path,
     project: &Project,
     build: &Build,
     bitstream: &str,
-) -> Result<&'static str, GenError> {
+) -> Result<(), GenError> {
     // Names of pins as the constraints have them, without what else stands there.
     let place = |pin: &Assignment| format!("set_io {} {}\n", pin.signal, pin.pin);
     let places: String = project.pins.iter().map(place).collect();
-    write(folder, "pins.pcf", &places)?;
+    artifact::write(
+        folder,
+        &[Artifact::new("pins.pcf", places)],
+        scratch::REMEDY,
+    )?;
     let words = |text: &[&str]| text.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
     run(
         folder,
@@ -187,24 +194,27 @@ fn icestorm(
         "-p",
         "pins.pcf",
         "-n",
-        "chip",
+        CHIP,
         "chip.asc",
     ]);
     let chip = run(folder, &read, ICESTORM)?.stdout;
     let clock = chip.replace("SB_PLL40_CORE #(", "clock_stand_in #(");
     let chip = clock.replace("SB_PLL40_PAD #(", "clock_stand_in #(");
-    write(folder, "chip.v", &chip)?;
-    write(folder, "models.v", include_str!("read_back/ice40.v"))?;
+    let files = [
+        Artifact::new("chip.v", chip),
+        Artifact::new("models.v", include_str!("read_back/ice40.v")),
+    ];
+    artifact::write(folder, &files, scratch::REMEDY)?;
     let read = "read_verilog -D ICE40_HX -D NO_ICE40_DEFAULT_ASSIGNMENTS +/ice40/cells_sim.v; read_verilog models.v chip.v";
-    flatten(folder, build, read, "chip")
+    flatten(folder, build, read, CHIP)
 }
 
-/// Reads the netlist that nextpnr has written of an ECP5; returns the name of its module.
-fn ecp5_netlist(folder: &Path, build: &Build) -> Result<&'static str, GenError> {
+/// Reads the netlist that nextpnr has written of an ECP5.
+fn ecp5_netlist(folder: &Path, build: &Build) -> Result<(), GenError> {
     let text = scratch::read(&folder.join(PLACED))?;
     let fault = |e: &dyn fmt::Display| GenError::fault("netlist of nextpnr", e);
     let mut netlist: Value = serde_json::from_str(&text).map_err(|e| fault(&e))?;
-    let cells = netlist["modules"]["top"]["cells"].as_object_mut();
+    let cells = netlist["modules"][NETLIST]["cells"].as_object_mut();
     let cells = cells.ok_or_else(|| fault(&"it has no module top"))?;
     for cell in cells.values_mut() {
         // What is not connected: an input of a table is high in the device, a reset is low.
@@ -223,19 +233,17 @@ fn ecp5_netlist(folder: &Path, build: &Build) -> Result<&'static str, GenError> 
             }
         }
     }
-    write(folder, "netlist.json", &netlist.to_string())?;
-    write(folder, "models.v", include_str!("read_back/ecp5.v"))?;
+    let files = [
+        Artifact::new("netlist.json", netlist.to_string()),
+        Artifact::new("models.v", include_str!("read_back/ecp5.v")),
+    ];
+    artifact::write(folder, &files, scratch::REMEDY)?;
     let read = "read_json netlist.json; read_verilog -overwrite models.v";
-    flatten(folder, build, read, "top")
+    flatten(folder, build, read, NETLIST)
 }
 
 /// Makes plain Verilog of what was read and of models of its cells.
-fn flatten(
-    folder: &Path,
-    build: &Build,
-    read: &str,
-    top: &'static str,
-) -> Result<&'static str, GenError> {
+fn flatten(folder: &Path, build: &Build, read: &str, top: &str) -> Result<(), GenError> {
     // Behind a reset a channel is quiet for 30 ms, which are millions of cycles: the registers of the reset, the only ones with an
     // asynchronous one, begin as they are when it is over, and the card by the start values of its registers, as in its bench.
     let after = |set: char, over: char| {
@@ -248,8 +256,7 @@ fn flatten(
         after('0', '1')
     );
     let words = ["yosys", "-q", "-p", &script].map(str::to_owned);
-    run(folder, &words, &build.install)?;
-    Ok(top)
+    run(folder, &words, &build.install).map(drop)
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! A card's own bench, recorded, and played to something else that should do the same on every pin in every cycle.
 
+use crate::area::run as run_tool;
+use crate::artifact::{self, Artifact};
 use crate::error::GenError;
 use crate::scratch;
-use crate::tools;
 use std::path::Path;
 
 /// What the player says when nothing differs.
@@ -98,30 +99,13 @@ endmodule
     )
 }
 
-/// Writes a text there.
-pub(super) fn write(folder: &Path, file: &str, text: &str) -> Result<(), GenError> {
-    let path = folder.join(file);
-    std::fs::write(&path, text).map_err(|e| GenError::io("write", &path, &e, scratch::REMEDY))
-}
-
-/// Compiles with iverilog and runs; what the simulation says.
+/// Compiles with iverilog and runs; what the simulation prints.
 fn simulate(folder: &Path, tops: &[&str], more: &[&str]) -> Result<String, GenError> {
     let mut arguments = vec!["-g2005", "-o", "sim.vvp"];
     arguments.extend(tops.iter().flat_map(|top| ["-s", top]));
     arguments.extend(more);
-    let wrong = |tool: &str, said: &str| {
-        let said = crate::error::shorten(said);
-        GenError::input(format!("{tool}: failed in {}: {said}", folder.display()))
-    };
-    let ran = tools::run("iverilog", folder, &arguments)?;
-    if !ran.is_good {
-        return Err(wrong("iverilog", &ran.text()));
-    }
-    let ran = tools::run("vvp", folder, &["-n", "sim.vvp"])?;
-    match ran.is_good {
-        true => Ok(ran.text()),
-        false => Err(wrong("vvp", &ran.text())),
-    }
+    run_tool("iverilog", folder, &arguments)?;
+    run_tool("vvp", folder, &["-n", "sim.vvp"])
 }
 
 /// Stimulus and outputs of a card, one line a cycle, recorded while it runs in its own test bench; `files` are its Verilog and that of
@@ -134,10 +118,11 @@ pub fn record(
     is_inverted: &dyn Fn(&str) -> bool,
     cycles: usize,
 ) -> Result<String, GenError> {
-    write(
+    let text = recorder(card, pins, is_inverted, cycles);
+    artifact::write(
         folder,
-        "recorder.v",
-        &recorder(card, pins, is_inverted, cycles),
+        &[Artifact::new("recorder.v", text)],
+        scratch::REMEDY,
     )?;
     let bench = format!("{card}_tb");
     let files = files.iter().map(String::as_str);
@@ -159,9 +144,12 @@ pub fn play(
     pins: &Pins,
     files: &[&str],
 ) -> Result<String, GenError> {
-    write(folder, "recording.txt", recording)?;
     let text = player(instance, pins, recording.lines().count());
-    write(folder, "player.v", &text)?;
+    let more = [
+        Artifact::new("recording.txt", recording),
+        Artifact::new("player.v", text),
+    ];
+    artifact::write(folder, &more, scratch::REMEDY)?;
     let files: Vec<&str> = ["player.v"]
         .into_iter()
         .chain(files.iter().copied())

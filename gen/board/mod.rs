@@ -222,6 +222,11 @@ impl Board {
         self.iostandards.get(pin).unwrap_or(&self.iostandard)
     }
 
+    /// Whether it is a light whose pin is low while it shines.
+    pub fn inverts(&self, pin: &Assignment) -> bool {
+        pin.kind == Kind::Led && self.low_active.contains(&pin.pin)
+    }
+
     /// Factors that make exactly this system clock; `Err` has the message with the nearest frequencies.
     pub fn pll(&self, system_hz: u64) -> Result<Pll, String> {
         self.family.clock_manager.pll(self.oscillator_hz, system_hz)

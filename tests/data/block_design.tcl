@@ -132,7 +132,6 @@ proc assign_bd_address {o offset r range t space segment} {
 proc validate_bd_design {} {
     foreach cell [array names ::kind] {
         foreach {name direction} [pins $cell] {
-            # Without its processor's cells a system has pins that nothing drives.
             if {$direction eq "I" && ![info exists ::driver($cell/$name)]} { error "nothing drives $cell/$name" }
         }
         foreach {name direction} [interfaces $cell] {
