@@ -199,7 +199,8 @@ fn icestorm(
     ]);
     let chip = run(folder, &read, ICESTORM)?.stdout;
     let clock = chip.replace("SB_PLL40_CORE #(", "clock_stand_in #(");
-    let chip = clock.replace("SB_PLL40_PAD #(", "clock_stand_in #(");
+    let clock = clock.replace("SB_PLL40_PAD #(", "clock_stand_in #(");
+    let chip = with_oscillator(&clock).unwrap_or(clock);
     let files = [
         Artifact::new("chip.v", chip),
         Artifact::new("models.v", include_str!("read_back/ice40.v")),
@@ -207,6 +208,13 @@ fn icestorm(
     artifact::write(folder, &files, scratch::REMEDY)?;
     let read = "read_verilog -D ICE40_HX -D NO_ICE40_DEFAULT_ASSIGNMENTS +/ice40/cells_sim.v; read_verilog models.v chip.v";
     flatten(folder, build, read, CHIP)
+}
+
+/// With the oscillator at a clock manager that has a pin of its own, which icebox_vlog leaves open; none if there is no such.
+fn with_oscillator(chip: &str) -> Option<String> {
+    let (before, rest) = chip.split_once(".PACKAGEPIN(")?;
+    let (_, behind) = rest.split_once(')')?;
+    Some(format!("{before}.PACKAGEPIN({OSCILLATOR_PORT}){behind}"))
 }
 
 /// Reads the netlist that nextpnr has written of an ECP5.
@@ -262,6 +270,15 @@ fn flatten(folder: &Path, build: &Build, read: &str, top: &str) -> Result<(), Ge
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Catches a device that stands still, and is right until somebody asks it for something.
+    #[test]
+    fn the_oscillator_reaches_a_clock_manager_with_a_pin_of_its_own() {
+        let text = ".DIVQ(3'd5)\n) p (\n  .PACKAGEPIN(n34),\n  .LOCK(n4)\n);";
+        let told = with_oscillator(text).unwrap();
+        assert_eq!(told, text.replace("n34", OSCILLATOR_PORT));
+        assert_eq!(with_oscillator("  .REFERENCECLK(osc_i),"), None);
+    }
 
     #[test]
     fn a_difference_names_its_cycle_and_pins() {

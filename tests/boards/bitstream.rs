@@ -11,14 +11,16 @@ use std::fs;
 /// One channel, without the stream: what a small device takes in little time.
 pub fn small_card(dir: &Dir, board: &str) -> String {
     let text = good(&["presets", "--show", "s6_two_channel", "--board", board]);
-    let second = text
-        .find("[[channel]]                     # channel 1")
-        .unwrap();
-    let text = format!(
-        "{}{}",
-        &text[..second],
-        &text[text.find("[trigger]").unwrap()..]
-    );
+    // Small devices have one channel as they are.
+    let second = text.find("[[channel]]                     # channel 1");
+    let text = match second {
+        Some(second) => format!(
+            "{}{}",
+            &text[..second],
+            &text[text.find("[trigger]").unwrap()..]
+        ),
+        None => text,
+    };
     let text = text.replace("fifo_bytes = 2_048", "fifo_bytes = 0");
     dir.write("card.toml", text.as_bytes())
 }
