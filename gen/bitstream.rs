@@ -1,15 +1,18 @@
 //! From an emission to a bitstream with open tools: yosys, nextpnr with one seed after another, and what packs its result; or with the
 //! vendor's tool and a script of the emission.
 
+mod attempt;
 mod read_back;
 pub mod replay;
 mod vendor;
 
+use attempt::attempt;
+pub use attempt::{input_hz, Attempt, Clock, Inputs, Use};
 pub use read_back::{way as way_back, Comparison, CYCLES};
 pub use vendor::{read, run as run_vendor};
 
 use crate::artifact::{self, Artifact};
-use crate::board::{Board, Build, ReadBack, Vendor, OSCILLATOR_PORT};
+use crate::board::{Board, Build, ReadBack, Vendor};
 use crate::config::Project;
 use crate::error::GenError;
 use crate::readers::is_bench;
@@ -20,7 +23,6 @@ use minijinja::context;
 use minijinja::value::Serde;
 use serde::Serialize;
 use serde_json::{json, Value};
-use std::collections::BTreeMap;
 use std::fmt;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -28,55 +30,6 @@ use std::process::Command;
 
 /// Most that is shown of what a tool says when it fails.
 const TAIL_BYTES: usize = 800;
-
-/// One clock of the device.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Clock {
-    /// Net.
-    pub net: String,
-    /// Fastest that it may be, in MHz.
-    pub fmax_mhz: f64,
-    /// What it is, in MHz.
-    pub wanted_mhz: f64,
-    /// How much faster it could be, in percent.
-    pub margin_percent: f64,
-}
-
-/// How much of one kind of cell a card takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Use {
-    /// Taken.
-    pub used: u64,
-    /// There are.
-    pub available: u64,
-}
-
-/// What one seed gave.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Attempt {
-    /// Seed of the placer; 0 with a tool that takes none.
-    pub seed: u32,
-    /// Whether every clock is fast enough.
-    pub is_met: bool,
-    /// All clocks.
-    pub clocks: Vec<Clock>,
-    /// Cells by their kind; what there is none of is left out.
-    pub cells: BTreeMap<String, Use>,
-}
-
-impl Attempt {
-    /// The clock with the least margin.
-    pub fn tightest(&self) -> Option<&Clock> {
-        let by_margin = |a: &&Clock, b: &&Clock| a.margin_percent.total_cmp(&b.margin_percent);
-        self.clocks.iter().min_by(by_margin)
-    }
-
-    /// Its margin, in percent.
-    pub fn margin(&self) -> f64 {
-        self.tightest()
-            .map_or(f64::NEG_INFINITY, |c| c.margin_percent)
-    }
-}
 
 /// What a build gave.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -128,6 +81,14 @@ impl fmt::Display for Report {
                 decimal(clock.fmax_mhz, 1),
                 decimal(clock.wanted_mhz, 3),
                 decimal(clock.margin_percent, 1)
+            )?;
+        }
+        if let Some(inputs) = &self.best.inputs {
+            writeln!(
+                f,
+                "inputs without a clock         {} ns at most to their first register, {} ns allowed",
+                decimal(inputs.slowest_ns, 1),
+                decimal(inputs.allowed_ns, 1)
             )?;
         }
         for (kind, cells) in &self.best.cells {
@@ -273,7 +234,7 @@ pub fn build(
         words.extend(more.map(str::to_owned));
         run(&words)?;
         tried = seed;
-        let attempt = read_report(&folder.join("report.json"), seed, project.card.system_hz)?;
+        let attempt = read_report(&folder.join("report.json"), seed, project)?;
         if let Some(clock) = attempt.tightest() {
             let (fmax, wanted) = (decimal(clock.fmax_mhz, 1), decimal(clock.wanted_mhz, 3));
             progress(format!(
@@ -359,11 +320,11 @@ fn failed(name: &str, ran: &tools::Ran) -> GenError {
 }
 
 /// What nextpnr reports.
-fn read_report(path: &Path, seed: u32, system_hz: u64) -> Result<Attempt, GenError> {
+fn read_report(path: &Path, seed: u32, project: &Project) -> Result<Attempt, GenError> {
     let text = scratch::read(path)?;
     let report: Value =
         serde_json::from_str(&text).map_err(|e| GenError::fault("report of nextpnr", &e))?;
-    attempt(&report, seed, system_hz)
+    attempt(&report, seed, project.card.system_hz, input_hz(project))
         .ok_or_else(|| GenError::fault("report of nextpnr", &NO_SYSTEM_CLOCK))
 }
 
@@ -415,61 +376,4 @@ pub fn report_of(
         return Err(wrong(&text));
     }
     Ok(report)
-}
-
-/// The clocks and cells of a report; none if it does not have the system clock.
-fn attempt(report: &Value, seed: u32, system_hz: u64) -> Option<Attempt> {
-    let clocks = report["fmax"].as_object()?.iter();
-    let clocks = clocks.map(|(net, clock)| {
-        let (fmax_mhz, wanted_mhz) = (clock["achieved"].as_f64()?, clock["constraint"].as_f64()?);
-        Some(Clock {
-            net: net.clone(),
-            fmax_mhz,
-            wanted_mhz,
-            margin_percent: (fmax_mhz / wanted_mhz - 1.0) * 100.0,
-        })
-    });
-    let clocks: Vec<Clock> = clocks.collect::<Option<_>>()?;
-    let system_mhz = system_hz as f64 / 1e6;
-    // Periods are kept in whole picoseconds.
-    let is_system = |clock: &Clock| {
-        clock.wanted_mhz > system_mhz * 0.999 && !clock.net.starts_with(OSCILLATOR_PORT)
-    };
-    if !clocks.iter().any(is_system) {
-        return None;
-    }
-    let cells = report["utilization"].as_object().into_iter().flatten();
-    let cells = cells.filter_map(|(kind, cells)| {
-        let (used, available) = (cells["used"].as_u64()?, cells["available"].as_u64()?);
-        (used > 0).then(|| (kind.clone(), Use { used, available }))
-    });
-    Some(Attempt {
-        seed,
-        is_met: clocks
-            .iter()
-            .all(|clock| clock.fmax_mhz >= clock.wanted_mhz),
-        clocks,
-        cells: cells.collect(),
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn timing_is_met_when_every_clock_is_and_the_system_clock_is_there() {
-        let report = |fmax: Value| json!({"fmax": fmax, "utilization": {"LC": {"used": 5, "available": 10}, "RAM": {"used": 0, "available": 2}}});
-        let fast = json!({"clk": {"achieved": 120.0, "constraint": 99.0}, "osc_i": {"achieved": 300.0, "constraint": 12.0}});
-        let good = attempt(&report(fast), 7, 99_000_000).unwrap();
-        assert!(good.is_met);
-        assert_eq!((good.seed, good.cells.len()), (7, 1));
-        assert!((good.margin() - 21.2).abs() < 0.1, "{}", good.margin());
-        let slow = json!({"clk": {"achieved": 98.9, "constraint": 99.0}});
-        assert!(!attempt(&report(slow), 1, 99_000_000).unwrap().is_met);
-        // A clock that nobody has constrained as fast as it will be is no timing.
-        let other = json!({"clk": {"achieved": 120.0, "constraint": 12.0}});
-        assert_eq!(attempt(&report(other), 1, 99_000_000), None);
-        assert_eq!(attempt(&json!({}), 1, 99_000_000), None);
-    }
 }

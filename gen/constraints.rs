@@ -46,10 +46,12 @@ struct Port {
     attributes: String,
     /// Why the timing is not analysed; empty when it is.
     asynchronous: &'static str,
+    /// The most from the pin to the first register of such an input, in ns.
+    bound_ns: String,
 }
 
 impl Port {
-    fn new(pin: &Assignment, board: &Board, t_format: &[usize]) -> Self {
+    fn new(pin: &Assignment, project: &Project, board: &Board, t_format: &[usize]) -> Self {
         Self {
             signal: pin.signal.clone(),
             pin: pin.pin.clone(),
@@ -65,6 +67,10 @@ impl Port {
             output_cell: pin.kind == Kind::Transceiver,
             attributes: board.family.attributes(pin.kind).to_owned(),
             asynchronous: pin.kind.asynchronous().unwrap_or(""),
+            bound_ns: ns(match pin.kind {
+                Kind::EncoderData => bitstream::input_hz(project),
+                _ => project.card.system_hz,
+            }),
         }
     }
 }
@@ -232,7 +238,7 @@ fn of_board(
     let top = format!("{name}_top{}", top_language.extension());
     let t_format: Vec<usize> = project.card.t_format_numbers().collect();
     let ports: Vec<Value> = (project.pins.iter())
-        .map(|pin| Value::from(Serde(Port::new(pin, board, &t_format))))
+        .map(|pin| Value::from(Serde(Port::new(pin, project, board, &t_format))))
         .collect();
     let inverted = inverted(project, board);
     let facts = context! {

@@ -4,6 +4,7 @@
 mod interface;
 
 use crate::artifact::Artifact;
+use crate::bitstream;
 use crate::board::{Board, FUSESOC};
 use crate::config::{Project, Receiver};
 use crate::constraints::top_language;
@@ -21,13 +22,17 @@ use rtl_design::elaborate::{Design, Direction};
 use serde::Serialize;
 
 /// End of the file's name, and its template.
-const TEMPLATES: [(&str, &str); 8] = [
+const TEMPLATES: [(&str, &str); 9] = [
     (
         "_ipxact.xml",
         include_str!("templates/integration/ipxact.xml.jinja"),
     ),
     (".sdc", include_str!("templates/integration/sdc.jinja")),
     (".core", include_str!("templates/integration/core.jinja")),
+    (
+        "_ip.xdc",
+        include_str!("templates/integration/ip.xdc.jinja"),
+    ),
     (
         "_vivado.tcl",
         include_str!("templates/integration/vivado.tcl.jinja"),
@@ -167,6 +172,8 @@ pub struct Core<'a> {
     pub submodule: &'static str,
     /// System clocks that it takes, in hertz.
     pub system_hz: Vec<u64>,
+    /// How often a line without a clock is sampled.
+    pub input_hz: u64,
     /// Its Verilog files, the top module's among them.
     pub sources: &'a [String],
     /// There is a test bench.
@@ -214,6 +221,7 @@ impl<'a> Core<'a> {
             },
             submodule: "endat",
             system_hz: vec![project.card.system_hz],
+            input_hz: bitstream::input_hz(project),
             sources,
             has_bench,
             bus: project.bus,
@@ -239,6 +247,7 @@ impl<'a> Core<'a> {
             standard: "T-format",
             submodule: "receiver",
             system_hz: SYSTEM_HZ.to_vec(),
+            input_hz: SYSTEM_HZ.into_iter().max().unwrap_or_default(),
             sources,
             has_bench: true,
             // Its bus is an asynchronous one.
@@ -330,6 +339,7 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
         vlnv => format!("{VENDOR}:{LIBRARY}:{}:{}", core.name, env!("CARGO_PKG_VERSION")),
         mhz => decimal(fastest_hz as f64 / 1e6, 6),
         period_ns => decimal(1e9 / fastest_hz as f64, 3),
+        input_ns => decimal(1e9 / core.input_hz as f64, 3),
         asynchronous,
         bus => Value::from(Serde(&bus)),
         interrupt => Value::from(Serde(interrupt)),

@@ -47,10 +47,13 @@ fn read_ucf(text: &str) -> Result<BTreeMap<String, Net>, String> {
             "CONFIG" if rest.starts_with("PART = ") => {}
             "TIMESPEC" => {
                 let words: Vec<&str> = rest.split_whitespace().collect();
-                if let ["\"TS_asynchronous_inputs\"", "=", "FROM", group, "TO", "\"FFS\"", ns, "ns", "DATAPATHONLY"] =
+                if let [name, "=", "FROM", group, "TO", "\"FFS\"", ns, "ns", "DATAPATHONLY"] =
                     words[..]
                 {
                     let group = group.trim_matches('"');
+                    if name != format!("\"TS_{group}\"") {
+                        return Err(format!("TIMESPEC {name} of {group}"));
+                    }
                     let is_in =
                         |net: &&mut Net| net.attributes.get("TNM").is_some_and(|g| g == group);
                     let mut inputs = nets.values_mut().filter(is_in).peekable();
@@ -167,7 +170,9 @@ pub fn judge(project: &Project) {
             .attributes
             .get("BOUND")
             .map(|ns| ns.parse::<f64>().unwrap());
-        let period = 1e9 / project.card.system_hz as f64;
+        let samples =
+            1 + u32::from(project.card.line.double_edge && port.starts_with("endat_data"));
+        let period = 1e9 / project.card.system_hz as f64 / f64::from(samples);
         assert_eq!(bound.is_some(), is_asynchronous, "{port}");
         assert!(
             bound.is_none_or(|ns| (ns - period).abs() < 1e-4),
@@ -230,6 +235,35 @@ fn the_wiring_page_names_the_pins_of_the_preset() {
             .lines()
             .find(|l| l.starts_with('|') && l.contains(&name) && l.contains(&place));
         assert!(row.is_some(), "{} on {place}", pin.signal);
+    }
+}
+
+/// Catches two samplers of one line of which one may see it a sample later than the other.
+#[test]
+fn a_line_with_two_samplers_has_half_the_way_to_them() {
+    let of = |board: &str| {
+        let request =
+            crate::program::good(&["presets", "--show", "s6_two_channel", "--board", board]);
+        let (before, line) = request.split_once("[line]").unwrap();
+        let line = line.replacen("parts = []", "parts = [\"alignment\", \"double_edge\"]", 1);
+        let request = format!("{before}[line]{line}");
+        parse("card.toml", &request).unwrap()
+    };
+    let card = of("papilio_pro");
+    assert!(card.card.line.double_edge);
+    let nets = read_ucf(&text_of(&card, ".ucf")).unwrap();
+    let bound = |signal: &str| nets[signal].attributes["BOUND"].clone();
+    assert_eq!(bound("endat_data1_i"), "5");
+    assert_eq!(bound("trigger_i"), "10");
+    for (board, end, word) in [
+        ("arty_a7_35", "channel.xdc", " -datapath_only"),
+        ("de10_nano", "_top.sdc", ""),
+    ] {
+        let text = text_of(&of(board), end);
+        for (signal, ns) in [("endat_data1_i", 5), ("trigger_i", 10)] {
+            let line = format!("set_max_delay{word} -from [get_ports {signal}] {ns}\n");
+            assert!(text.contains(&line), "{line}{text}");
+        }
     }
 }
 

@@ -115,7 +115,20 @@ fn the_instantiation_template_is_complete() {
 /// Vivado's commands as tclsh sees them: each called with words that it knows, files that exist, ports that the card has.
 const VIVADO: &str = r#"
 proc create_project args {}
-proc add_files {option file} { if {![file exists $file]} { error "no file $file" } ; incr ::files }
+proc add_files args {
+    set file [lindex $args end]
+    if {![file exists $file]} { error "no file $file" }
+    if {[lrange $args 0 1] eq {-fileset constrs_1}} { source $file } else { incr ::files }
+}
+set bounds 0
+proc get_ports names {
+    foreach name $names { if {$name ni $::ports} { error "no port $name" } }
+    return $names
+}
+proc set_max_delay {only from ports ns} {
+    if {"$only $from" ne "-datapath_only -from" || $ports eq {}} { error "set_max_delay $only $from $ports" }
+    set ::bounds $ns
+}
 proc current_fileset {} { return sources_1 }
 proc set_property {name value object} {
     if {$object eq ""} { error "no object for $name" }
@@ -168,7 +181,7 @@ fn packaged(name: &str, folder: &Path) -> String {
         .filter_map(|l| l.strip_prefix("    .")?.split('(').next());
     let script = format!(
         "set ports {{{}}}\n{VIVADO}source {name}_vivado.tcl\n\
-         puts \"files $files saved $saved\"\nputs \"known $known mapped $mapped linked $linked range $range\"\n",
+         puts \"files $files saved $saved\"\nputs \"known $known mapped $mapped linked $linked range $range bounds $bounds\"\n",
         ports.collect::<Vec<_>>().join(" ")
     );
     fs::write(folder.join("stub.tcl"), script).unwrap();
@@ -188,13 +201,18 @@ fn the_vivado_script_names_bus_clock_reset_and_interrupt() {
         (HostBus::AxiLite, "s_axi", "AWADDR AWVALID AWREADY WDATA WSTRB WVALID WREADY BRESP BVALID BREADY ARADDR ARVALID ARREADY RDATA RRESP RVALID RREADY"),
         (HostBus::Apb, "s_apb", "PSEL PENABLE PWRITE PADDR PWDATA PRDATA PREADY PSLVERR"),
     ];
-    for (bus, interface, signals) in rows {
-        let text = crate::bus::text(bus, "[outputs]\nparts = [\"interrupt\"]\n");
+    // Two samples in a period halve what there is between them.
+    let lines = [
+        ("", 10),
+        ("[line]\nparts = [\"alignment\", \"double_edge\"]\n", 5),
+    ];
+    for ((bus, interface, signals), (line, bound)) in rows.into_iter().zip(lines) {
+        let text = crate::bus::text(bus, &format!("[outputs]\nparts = [\"interrupt\"]\n{line}"));
         let project = endat_gen::config::parse("card.toml", &text).unwrap();
         let folder = written(&emit(&project).unwrap(), &format!("vivado-{interface}"));
         let told = packaged(&project.name, &folder);
         let wanted = format!(
-            "known clk_i rst_i {interface} irq_o mapped {signals} linked {interface} range 8192"
+            "known clk_i rst_i {interface} irq_o mapped {signals} linked {interface} range 8192 bounds {bound}"
         );
         assert!(told.contains(&wanted), "{told}");
     }

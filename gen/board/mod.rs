@@ -11,8 +11,8 @@ mod shipped;
 
 pub use clock::{ClockManager, Feedback, Pll};
 pub use family::{
-    Build, Family, ReadBack, Vendor, CLOCK, CLOCK_VHDL, CONSTRAINTS, FUSESOC, README, TIMING,
-    VENDOR,
+    Build, Family, Placed, ReadBack, Vendor, CLOCK, CLOCK_VHDL, CONSTRAINTS, FUSESOC, README,
+    TIMING, VENDOR,
 };
 pub use keys::{page, BOARD_KEYS};
 pub use package::Package;

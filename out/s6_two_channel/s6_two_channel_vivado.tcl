@@ -35,6 +35,7 @@ add_files -norecurse [file join $here s6_two_channel_set_channel_number_2.v]
 add_files -norecurse [file join $here s6_two_channel_uart_bridge.v]
 add_files -norecurse [file join $here s6_two_channel_uart_receiver.v]
 add_files -norecurse [file join $here s6_two_channel_uart_transmitter.v]
+add_files -fileset constrs_1 -norecurse [file join $here s6_two_channel_ip.xdc]
 set_property top s6_two_channel [current_fileset]
 update_compile_order -fileset sources_1
 

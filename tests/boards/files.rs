@@ -200,7 +200,7 @@ fn a_card_on_another_board_is_checked_against_that_board() {
 }
 
 /// A family of one's own beside a board of one's own: copies of these.
-fn own_family(dir: &Dir, family: &str, board: &str) -> String {
+pub fn own_family(dir: &Dir, family: &str, board: &str) -> String {
     let families = Path::new(env!("CARGO_MANIFEST_DIR")).join("constraints/families");
     let from = families.join(family);
     fs::create_dir_all(dir.0.join("mine")).unwrap();
