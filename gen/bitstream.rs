@@ -2,6 +2,7 @@
 //! vendor's tool and a script of the emission.
 
 mod attempt;
+mod output_cells;
 mod read_back;
 pub mod replay;
 mod vendor;
@@ -220,6 +221,7 @@ pub fn build(
         build.synthesis
     );
     run(&["yosys", "-q", "-p", &script].map(str::to_owned))?;
+    output_cells::mark_all(folder, project, &build.output_registers)?;
     let mhz = decimal(project.card.system_hz as f64 / 1e6, 6);
     let mut best: Option<Attempt> = None;
     let mut tried = 0;
@@ -282,8 +284,22 @@ fn made(folder: &Path, bitstream: &str) -> Result<Vec<u8>, GenError> {
     })
 }
 
-/// Runs a tool by its name or, rather, as YoWASP calls it.
+/// What may be done when a tool does not make a bitstream.
+const TOO_LARGE: &str =
+    "if the card does not fit, leave parts or channels out, or take a larger board";
+
+/// Runs a tool that makes a bitstream.
 fn run(folder: &Path, words: &[String], install: &str) -> Result<tools::Ran, GenError> {
+    run_or(folder, words, install, TOO_LARGE)
+}
+
+/// Runs a tool by its name or, rather, as YoWASP calls it; if it fails, `remedy` is what may be done.
+fn run_or(
+    folder: &Path,
+    words: &[String],
+    install: &str,
+    remedy: &str,
+) -> Result<tools::Ran, GenError> {
     let (tool, arguments) = words
         .split_first()
         .ok_or_else(|| GenError::input("build: no tool"))?;
@@ -300,7 +316,7 @@ fn run(folder: &Path, words: &[String], install: &str) -> Result<tools::Ran, Gen
         if ran.is_good {
             return Ok(ran);
         }
-        return Err(failed(&name, &ran));
+        return Err(failed(&name, &ran, remedy));
     }
     Err(GenError::input(format!(
         "{tool}: neither yowasp-{tool} nor {tool} is installed; install it: `{install}`"
@@ -308,13 +324,13 @@ fn run(folder: &Path, words: &[String], install: &str) -> Result<tools::Ran, Gen
 }
 
 /// What a tool says that did not do it.
-fn failed(name: &str, ran: &tools::Ran) -> GenError {
+fn failed(name: &str, ran: &tools::Ran, remedy: &str) -> GenError {
     let said = ran.text();
     let start = said.len().saturating_sub(TAIL_BYTES);
     let start = (start..said.len()).find(|at| said.is_char_boundary(*at));
     let tail = start.and_then(|at| said.get(at..)).unwrap_or_default();
     GenError::input(format!(
-        "{name}: failed; if the card does not fit, leave parts or channels out, or take a larger board. It said: {}",
+        "{name}: failed; {remedy}. It said: {}",
         tail.trim()
     ))
 }

@@ -1,7 +1,7 @@
 //! What open tools have made of a card, read back as Verilog and compared with the card it was made of.
 
 use super::replay::{self, Pins};
-use super::run;
+use super::{run, run_or};
 use crate::artifact::{self, Artifact};
 use crate::board::{Assignment, Board, Build, Kind, Placed, ReadBack, OSCILLATOR_PORT};
 use crate::config::Project;
@@ -23,6 +23,8 @@ const DEVICE: &str = "device.v";
 const CHIP: &str = "chip";
 /// The module that nextpnr writes.
 const NETLIST: &str = "top";
+/// What may be done when what was read is no Verilog.
+const NO_MODEL: &str = "leave --simulate out: it has a cell, or a use of one, that no model here knows, and the bitstream is as good as without";
 /// What installs the reader of iCE40 bitstreams.
 const ICESTORM: &str = "apt install fpga-icestorm";
 
@@ -343,7 +345,7 @@ fn flatten(folder: &Path, build: &Build, read: &str, top: &str) -> Result<(), Ge
         after('0', '1')
     );
     let words = ["yosys", "-q", "-p", &script].map(str::to_owned);
-    run(folder, &words, &build.install).map(drop)
+    run_or(folder, &words, &build.install, NO_MODEL).map(drop)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::{
     attempt, failed, file_name, fill, input_hz, made, report_of, Maker, Report, NO_SYSTEM_CLOCK,
+    TOO_LARGE,
 };
 use crate::artifact::{self, Artifact};
 use crate::board::{Board, Vendor};
@@ -60,7 +61,7 @@ pub fn run(
     let mut command = Command::new(name);
     match tools::start(command.current_dir(scratch.path()).args(arguments)) {
         Ok(ran) if ran.is_good => read(project, board, vendor, scratch.path()),
-        Ok(ran) => Err(failed(name, &ran)),
+        Ok(ran) => Err(failed(name, &ran, TOO_LARGE)),
         Err(e) if e.kind() == ErrorKind::NotFound => Err(GenError::input(format!(
             "{name}: is not installed here; on a machine with {}, run `{}` in {} (it is complete), and then the same command with --read",
             vendor.tool,

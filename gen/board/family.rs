@@ -60,6 +60,8 @@ pub struct Build {
     pub bitstream: String,
     /// Command that installs the tools.
     pub install: String,
+    /// Attributes, `name=value`, that make nextpnr put a register into the output cell; none if it cannot.
+    pub output_registers: Vec<String>,
     /// How its result is read back, if it can be.
     pub read_back: Option<ReadBack>,
 }
@@ -402,6 +404,12 @@ fn read_build(table: &Table<'_, '_>) -> Option<Build> {
     let install = table.required_string(&keys::INSTALL);
     let place = command(table, &keys::PLACE, &|tool| tool.starts_with("nextpnr-"));
     let pack = command(table, &keys::PACK, &|tool| tool.ends_with("pack"));
+    let output_registers = table.strings(&keys::OUTPUT_REGISTERS).unwrap_or_default();
+    for at in output_registers.iter().filter(|at| !at.value.contains('=')) {
+        let value = format!("{:?}", at.value);
+        let text = "is no attribute; write, for example, ioff_dir=output";
+        table.complain(at.line, keys::OUTPUT_REGISTERS.name, &value, text);
+    }
     let read_back = table.string(&keys::READ_BACK).map(|at| {
         let known = ReadBack::NAMES.iter().find(|(_, name)| *name == at.value);
         if known.is_none() {
@@ -430,6 +438,7 @@ fn read_build(table: &Table<'_, '_>) -> Option<Build> {
         );
     }
     Some(Build {
+        output_registers: output_registers.into_iter().map(|at| at.value).collect(),
         synthesis: synthesis.value,
         place: place?,
         pack: pack?,

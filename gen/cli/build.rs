@@ -8,6 +8,7 @@ use crate::bitstream::{self, Maker};
 use crate::board::Board;
 use crate::config::{Configuration, Project, RECEIVER_BUS};
 use crate::error::GenError;
+use crate::language::Language;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -66,7 +67,8 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
             path.display()
         )));
     }
-    be_of(&path, &folder, &crate::emit(&project)?, make)?;
+    let language = arguments.emission.language()?;
+    be_of(&path, &folder, &crate::emit_in(&project, language)?, make)?;
     bitstream::report_of(&project, &board, &folder, &name)?;
     Ok(Outcome::good(command + "\n"))
 }
@@ -76,7 +78,7 @@ fn be_of(path: &Path, folder: &Path, artifacts: &[Artifact], remedy: &str) -> Re
     match artifact::differences(folder, artifacts).first() {
         None => Ok(()),
         Some(other) => Err(GenError::input(format!(
-            "{}: is of another configuration, board or version ({other}); {remedy}",
+            "{}: is of another configuration, board, version or --language ({other}); {remedy}",
             path.display()
         ))),
     }
@@ -121,7 +123,13 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
         }
         (_, false) => None,
     };
-    let artifacts = crate::emit(&project)?;
+    let language = arguments.emission.language()?;
+    if let (Maker::Open(_), Language::Vhdl) = (maker, language) {
+        return Err(GenError::input(
+            "--language = vhdl: open tools read Verilog; leave it out, or take the vendor's tool with --vendor",
+        ));
+    }
+    let artifacts = crate::emit_in(&project, language)?;
     let bitstream = bitstream::file_name(&project, &board, maker)?;
     if artifacts.iter().any(|a| a.path == bitstream) {
         return Err(GenError::input(format!(

@@ -5,7 +5,6 @@ use super::{to_json, EmissionArgs, Outcome};
 use crate::artifact::{self, Artifact};
 use crate::config::Configuration;
 use crate::error::GenError;
-use crate::language::Language;
 use clap::Args;
 use endat_hdl::card::bus::HostBus;
 use serde_json::json;
@@ -16,9 +15,6 @@ use std::sync::atomic::Ordering;
 pub struct EmitArgs {
     #[command(flatten)]
     emission: EmissionArgs,
-    /// Language of the core: verilog, or vhdl, which is VHDL-93 and VHDL-2008 at once [default: verilog]
-    #[arg(long, value_name = "LANGUAGE")]
-    language: Option<String>,
     /// Write the C driver, too: C99 for any bus of a card, see docs/driver.md
     #[arg(long)]
     driver: bool,
@@ -36,8 +32,7 @@ pub struct EmitArgs {
 /// Runs the command.
 pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
     let stop = interrupted();
-    let language = arguments.language.as_deref().map(Language::named);
-    let language = language.transpose()?.unwrap_or_default();
+    let language = arguments.emission.language()?;
     let (configuration, folder) = arguments.emission.load()?;
     let mut artifacts = match &configuration {
         Configuration::Card(card) => crate::emit_in(card, language)?,
@@ -160,7 +155,7 @@ fn repair(arguments: &EmitArgs, force: bool) -> String {
         emission.out.as_ref().map(|p| p.display().to_string()),
     );
     add("--name", emission.name.clone());
-    add("--language", arguments.language.clone());
+    add("--language", emission.language.clone());
     if arguments.driver {
         words.push("--driver".into());
     }

@@ -25,6 +25,7 @@ use crate::board::Board;
 use crate::config::{self, check_name, Configuration};
 use crate::error::{shown, GenError};
 use crate::explain;
+use crate::language::Language;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -201,9 +202,17 @@ struct EmissionArgs {
     /// Name of the folder, the files and the top module [default: the name in the configuration]
     #[arg(long, value_name = "PREFIX")]
     name: Option<String>,
+    /// Language of the core: verilog, or vhdl, which is VHDL-93 and VHDL-2008 at once [default: verilog]
+    #[arg(long, value_name = "LANGUAGE")]
+    language: Option<String>,
 }
 
 impl EmissionArgs {
+    fn language(&self) -> Result<Language, GenError> {
+        let language = self.language.as_deref().map(Language::named);
+        Ok(language.transpose()?.unwrap_or_default())
+    }
+
     /// The configuration under its name, and the folder of its files.
     fn load(&self) -> Result<(Configuration, PathBuf), GenError> {
         let board = self.target.load()?;

@@ -93,7 +93,8 @@ fn a_small_card_becomes_a_bitstream_that_meets_its_clock() {
     let other = fs::read_to_string(&config).unwrap();
     let other = other.replace("clock_hz = 3_000_000", "clock_hz = 2_500_000");
     fs::write(&config, other).unwrap();
-    assert!(bad(&flash, 2).contains("card.bin: is of another configuration, board or version"));
+    assert!(bad(&flash, 2)
+        .contains("card.bin: is of another configuration, board, version or --language"));
     let clocks = report["best"]["clocks"].as_array().unwrap();
     let system = clocks
         .iter()

@@ -120,6 +120,58 @@ fn every_script_of_a_vendor_runs_to_its_end_and_its_report_is_read() {
     );
 }
 
+/// Catches a script that leaves a file of the other language out, or gives it to the wrong reader.
+#[test]
+fn every_script_of_a_vendor_takes_vhdl() {
+    if !tools::require("tclsh", "vendors' scripts") {
+        return;
+    }
+    let dir = Dir::new("vendor-vhdl");
+    let path = stand_ins(&dir);
+    for (board, ..) in BOARDS {
+        let out = dir.path(board);
+        let arguments = ["--board", board, "--out", &out, "--name", "card"];
+        let arguments = [&["--language", "vhdl"], &arguments[..]].concat();
+        good(&[&["emit"], &arguments[..]].concat());
+        let folder = Path::new(&out).join("card");
+        let script = fs::read_to_string(folder.join("card_build.tcl")).unwrap();
+        // The line that says how it is started.
+        let started = script.lines().find(|l| l.starts_with("# Bitstream of"));
+        let (_, command) = started.unwrap().rsplit_once(": ").unwrap();
+        let ran = std::process::Command::new("sh")
+            .args(["-c", command])
+            .env("PATH", &path)
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&ran.stderr);
+        assert!(ran.status.success(), "{board}: {told}");
+        let read = [&arguments[..], &["--vendor", "--read"]].concat();
+        let (code, _, told) = build(&read, &path, None);
+        assert_eq!(code, Some(0), "{board}: {told}");
+    }
+    // And run by the program.
+    let arguments = [
+        "--board",
+        "arty_a7_35",
+        "--out",
+        &dir.path("o"),
+        "--name",
+        "card",
+    ];
+    let arguments = [&["--language", "vhdl"], &arguments[..]].concat();
+    let (code, _, told) = build(&arguments, &path, None);
+    assert_eq!(code, Some(0), "{told}");
+    let flash = [&["flash"], &arguments[..]].concat();
+    assert!(good(&flash).contains("openFPGALoader --board arty_a7_35t"));
+    assert!(bad(&[&["flash"], &arguments[2..]].concat(), 2).contains("version or --language ("));
+    let told = bad(&["build", "--board", "ulx3s", "--language", "vhdl"], 2);
+    assert!(
+        told.contains("--language = vhdl: open tools read Verilog; leave it out"),
+        "{told}"
+    );
+}
+
 #[test]
 fn a_report_that_was_made_elsewhere_is_read_beside_its_emission() {
     if !tools::require("tclsh", "vendors' scripts") {
@@ -164,7 +216,8 @@ fn a_report_that_was_made_elsewhere_is_read_beside_its_emission() {
     other[1] = "zybo_z7_10";
     let (code, _, told) = build(&other, "", None);
     assert!(
-        code == Some(2) && told.contains("is of another configuration, board or version"),
+        code == Some(2)
+            && told.contains("is of another configuration, board, version or --language"),
         "{told}"
     );
     // Nor the one of what was emitted here before, although its file is still there.

@@ -14,9 +14,10 @@ proc must_exist file {
     must {[file exists $file] && [file size $file] > 0} "no file $file"
 }
 
-# A source: the module or entity of its name is in it.
-proc must_be_source file {
+# A source in a language: the module or entity of its name is in it.
+proc must_be_source {file language} {
     must_exist $file
+    must {[file extension $file] eq [dict get {verilog .v vhdl .vhd} $language]} "$file as $language"
     set channel [open $file]
     set text [read $channel]
     close $channel
@@ -34,7 +35,7 @@ proc leave {file text} {
 }
 
 proc must_be_whole top {
-    must_exist $top.v
+    must {[file exists $top.v] || [file exists $top.vhd]} "no $top"
     must {$::read_count > 10} "only $::read_count sources"
 }
 
@@ -43,7 +44,8 @@ switch $shell {
     vivado {
         must {[lrange $argv 0 3] eq {-mode batch -nojournal -source}} $argv
         set script [lindex $argv 4]
-        proc read_verilog file { must_be_source $file }
+        proc read_verilog file { must_be_source $file verilog }
+        proc read_vhdl file { must_be_source $file vhdl }
         proc read_xdc file {
             proc set_property {option list ports} { must {$option eq "-dict" || $ports eq "design"} "$option $ports" }
             proc create_clock {n name p period port} { must {$period == 10 && $port eq "osc_i"} "$period $port" }
@@ -103,8 +105,8 @@ switch $shell {
         must {$part eq "xc6slx9-tqg144-2"} $part
         set channel [open $project]
         foreach line [split [string trim [read $channel]] "\n"] {
-            must {[lrange $line 0 1] eq {verilog work}} $line
-            must_be_source [lindex $line 2]
+            must {[lindex $line 1] eq "work"} $line
+            must_be_source [lindex $line 2] [lindex $line 0]
         }
         must_be_whole $top
         leave $result "netlist"
@@ -178,7 +180,8 @@ Timing constraint: TS_asynchronous_inputs = MAXDELAY FROM TIMEGRP
         proc set_global_assignment {n name value} {
             set ::globals($name) $value
             switch $name {
-                VERILOG_FILE { must_be_source $value }
+                VERILOG_FILE { must_be_source $value verilog }
+                VHDL_FILE { must_be_source $value vhdl }
                 SDC_FILE { must_exist $value }
             }
         }
@@ -221,8 +224,8 @@ Timing constraint: TS_asynchronous_inputs = MAXDELAY FROM TIMEGRP
         must {[llength $argv] == 1} $argv
         proc set_device {n die part} { must {"$n $die $part" eq "-name GW1NR-9C GW1NR-LV9QN88PC6/I5"} "$die $part" }
         proc add_file {t type file} {
-            must {$t eq "-type" && $type in {verilog cst sdc}} $type
-            if {$type eq "verilog"} { must_be_source $file } else { must_exist $file }
+            must {$t eq "-type" && $type in {verilog vhdl cst sdc}} $type
+            if {$type in {verilog vhdl}} { must_be_source $file $type } else { must_exist $file }
         }
         proc set_option {name value} { set ::options($name) $value }
         proc run what {
@@ -255,7 +258,13 @@ Timing constraint: TS_asynchronous_inputs = MAXDELAY FROM TIMEGRP
             must {"$what $i $d $part" eq "new -impl -dev LFE5U-85F-6BG381C"} "$what $part"
             set ::result $impl/${name}_$impl
         }
-        proc prj_src {what file} { if {[file extension $file] eq ".v"} { must_be_source $file } else { must_exist $file } }
+        proc prj_src {what file} {
+            switch [file extension $file] {
+                .v { must_be_source $file verilog }
+                .vhd { must_be_source $file vhdl }
+                default { must_exist $file }
+            }
+        }
         proc prj_impl {what key top} { must {"$what $key" eq "option top"} "$what $key" ; must_be_whole $top }
         proc prj_run {step i impl args} {
             lappend ::steps [concat $step $args]

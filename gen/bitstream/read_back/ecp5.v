@@ -15,10 +15,32 @@ endmodule
 module DCCA (input CLKI, input CE, output CLKO);
     assign CLKO = CLKI;
 endmodule
-module TRELLIS_IO #(parameter DIR = "INPUT", parameter DATAMUX_MDDR = 0, parameter DATAMUX_ODDR = 0) (inout B, input I, input T, output O);
+// IOLDO: from the register in the output cell. What is not connected is low here.
+module TRELLIS_IO #(
+    parameter DIR = "INPUT", parameter DATAMUX_MDDR = 0, parameter DATAMUX_ODDR = 0, parameter DATAMUX_OREG = 0
+) (
+    inout B, input I, T, IOLDO, IOLTO, output O
+);
     generate
-        if (DIR == "INPUT") assign O = B; else assign B = I;
+        if (DIR == "INPUT") assign O = B; else assign B = I | IOLDO;
     endgenerate
+endmodule
+// The register in the output cell.
+module SIOLOGIC #(
+    parameter MODE = "IREG_OREG", parameter [127:0] SRMODE = "LSR_OVER_CE", parameter \OUTREG.REGSET = "RESET",
+    parameter [127:0] \OUTREG.OUTREGMODE = "FF", parameter [127:0] CEOMUX = "1", parameter [127:0] LSRMUX = "LSR",
+    parameter [127:0] LSROMUX = "LSRMUX", parameter LSRIMUX = 0, parameter [127:0] CLKOMUX = "CLK", parameter CLKIMUX = 0, parameter GSR = 0,
+    parameter \DELAY.WAIT_FOR_EDGE = 0, parameter \DELAY.DEL_VALUE = 0, parameter \DELAY.OUTDEL = 0
+) (
+    input CE, CLK, DI, DIRECTION, IOLDOI, LOADN, LSR, MOVE, PADDI, TSDATA0, TXDATA0, TXDATA1,
+    output CFLAG, INDD, INFF, IOLDOD, IOLTO, RXDATA0, RXDATA1, output reg IOLDO
+);
+    generate
+        if (MODE != "IREG_OREG" || SRMODE != "LSR_OVER_CE" || \OUTREG.OUTREGMODE != "FF" || CEOMUX != "1" || LSRMUX != "LSR"
+            || LSROMUX != "LSRMUX" || CLKOMUX != "CLK") no_model_of_this_register none ();
+    endgenerate
+    initial IOLDO = \OUTREG.REGSET == "SET";
+    always @(posedge CLK) IOLDO <= LSR ? \OUTREG.REGSET == "SET" : TXDATA0;
 endmodule
 module TRELLIS_FF #(
     parameter GSR = 0, parameter [127:0] CEMUX = "1", parameter CLKMUX = "CLK", parameter LSRMUX = "LSR", parameter SRMODE = "LSR_OVER_CE",
