@@ -45,6 +45,8 @@ pub struct Report {
     pub system_hz: u64,
     /// How many seeds were tried; 0 with a tool that takes none.
     pub seeds: u32,
+    /// What the clock with the least margin reached with each of them, in MHz, in their order.
+    pub reached_mhz: Vec<f64>,
     /// The best of them.
     pub best: Attempt,
     /// Name of the bitstream.
@@ -56,13 +58,20 @@ pub struct Report {
 }
 
 impl Report {
-    fn new(project: &Project, board: &Board, seeds: u32, best: Attempt, bitstream: String) -> Self {
+    fn new(
+        project: &Project,
+        board: &Board,
+        reached_mhz: Vec<f64>,
+        best: Attempt,
+        bitstream: String,
+    ) -> Self {
         Self {
             name: project.name.clone(),
             board: board.name.clone(),
             part: board.part.clone(),
             system_hz: project.card.system_hz,
-            seeds,
+            seeds: reached_mhz.len() as u32,
+            reached_mhz,
             best,
             bitstream,
             load: None,
@@ -191,14 +200,24 @@ pub fn loading(board: &Board, bitstream: &Path, for_good: bool) -> Option<String
     Some(format!("openFPGALoader --board {loader}{flash} {path}"))
 }
 
-/// Builds a card; tries up to `seeds` seeds until timing is met, and reads the best back that `way_back`. Returns the report and the
-/// bitstream's bytes.
+/// How much is tried.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Seeds of the placer, at most.
+    pub seeds: u32,
+    /// No further seed when one meets timing.
+    pub until_met: bool,
+    /// How the best is read back, if it is.
+    pub way_back: Option<ReadBack>,
+}
+
+/// Builds a card. Returns the report of the best seed and its bitstream's bytes.
 pub fn build(
     project: &Project,
     board: &Board,
     build: &Build,
     artifacts: &[Artifact],
-    (seeds, way_back): (u32, Option<ReadBack>),
+    effort: Effort,
     progress: &mut dyn FnMut(String),
 ) -> Result<(Report, Vec<u8>), GenError> {
     let name = project.name.as_str();
@@ -224,7 +243,10 @@ pub fn build(
     output_cells::mark_all(folder, project, &build.output_registers)?;
     let mhz = decimal(project.card.system_hz as f64 / 1e6, 6);
     let mut best: Option<Attempt> = None;
-    let mut tried = 0;
+    let mut reached_mhz = vec![];
+    let Effort {
+        seeds, way_back, ..
+    } = effort;
     for seed in 1..=seeds {
         progress(format!("{name}: place and route, seed {seed} of {seeds}"));
         let mut words = fill(&build.place)?;
@@ -235,9 +257,9 @@ pub fn build(
             .chain(["--report", "report.json", "--timing-allow-fail"]);
         words.extend(more.map(str::to_owned));
         run(&words)?;
-        tried = seed;
         let attempt = read_report(&folder.join("report.json"), seed, project)?;
         if let Some(clock) = attempt.tightest() {
+            reached_mhz.push(clock.fmax_mhz);
             let (fmax, wanted) = (decimal(clock.fmax_mhz, 1), decimal(clock.wanted_mhz, 3));
             progress(format!(
                 "{name}: seed {seed}: {fmax} MHz of {wanted} MHz wanted"
@@ -253,7 +275,7 @@ pub fn build(
             way_back.map_or(Ok(()), |way| read_back::keep(folder, name, way))?;
             best = Some(attempt);
         }
-        if is_met {
+        if is_met && effort.until_met {
             break;
         }
     }
@@ -261,7 +283,7 @@ pub fn build(
         best.ok_or_else(|| GenError::input("--seeds = 0: no seed, no bitstream; give 1 or more"))?;
     let bitstream = file_name(project, board, Maker::Open(build))?;
     let bytes = made(folder, &bitstream)?;
-    let mut report = Report::new(project, board, tried, best, bitstream);
+    let mut report = Report::new(project, board, reached_mhz, best, bitstream);
     if let Some(way) = way_back {
         progress(format!("{name}: read back, {CYCLES} cycles"));
         let what = (project, board, build, way);

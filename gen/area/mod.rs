@@ -3,6 +3,7 @@
 //! Figures are comparable only within one version of the tools, so another version of yosys is refused.
 
 mod cells;
+pub mod flows;
 mod guard;
 mod report;
 mod speed;
@@ -113,9 +114,18 @@ pub fn version() -> Result<String, GenError> {
 
 /// Runs a tool; what it printed on stdout.
 pub(crate) fn run(tool: &str, folder: &Path, arguments: &[&str]) -> Result<String, GenError> {
+    run_good(tool, folder, arguments).map(|ran| ran.stdout)
+}
+
+/// Runs a tool; what it printed, complaints as well.
+fn run_for_all(tool: &str, folder: &Path, arguments: &[&str]) -> Result<String, GenError> {
+    run_good(tool, folder, arguments).map(|ran| ran.text())
+}
+
+fn run_good(tool: &str, folder: &Path, arguments: &[&str]) -> Result<tools::Ran, GenError> {
     let ran = tools::run(tool, folder, arguments)?;
     if ran.is_good {
-        return Ok(ran.stdout);
+        return Ok(ran);
     }
     let text = ran.stderr;
     let start = text.len().saturating_sub(600);

@@ -30,7 +30,7 @@ pub fn read(
         ))
     })?;
     let bytes = made(folder, &bitstream)?;
-    Ok((Report::new(project, board, 0, best, bitstream), bytes))
+    Ok((Report::new(project, board, vec![], best, bitstream), bytes))
 }
 
 /// Runs the script on a copy of the emission. Returns the report and the bitstream's bytes; `emitted` is where the emission is.

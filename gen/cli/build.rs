@@ -4,7 +4,7 @@ use super::colour;
 use super::work::Steps;
 use super::{to_json, EmissionArgs, Outcome};
 use crate::artifact::{self, Artifact};
-use crate::bitstream::{self, Maker};
+use crate::bitstream::{self, Effort, Maker};
 use crate::board::Board;
 use crate::config::{Configuration, Project, RECEIVER_BUS};
 use crate::error::GenError;
@@ -151,8 +151,12 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     let mut begin = |step: String| steps.begin(&step);
     let (mut report, bytes) = match maker {
         Maker::Open(build) => {
-            let seeds = (arguments.seeds, way_back);
-            bitstream::build(&project, &board, build, &artifacts, seeds, &mut begin)?
+            let effort = Effort {
+                seeds: arguments.seeds,
+                until_met: true,
+                way_back,
+            };
+            bitstream::build(&project, &board, build, &artifacts, effort, &mut begin)?
         }
         Maker::Vendor(vendor) if arguments.read => {
             bitstream::read(&project, &board, vendor, &folder)?

@@ -11,6 +11,7 @@ mod doctor;
 mod documents;
 mod emit;
 mod explain_key;
+mod flows;
 mod host;
 mod new;
 mod pictures;
@@ -88,7 +89,8 @@ enum Command {
         /// Print the file of this board, to start one of your own from
         #[arg(long, value_name = "NAME")]
         show: Option<String>,
-        /// Build the shipped card on each board that open tools know, or on this one, and print what it takes as a table: takes minutes
+        /// Build the shipped card with five seeds on each board that open tools know, or on this one, and print what came of it as a table:
+        /// takes an hour
         #[arg(long, value_name = "NAME", num_args = 0..=1, conflicts_with = "show")]
         measure: Option<Option<String>>,
         /// Draw how the shipped card is wired on this board (name or file), as SVG
@@ -125,6 +127,8 @@ enum Command {
     Prove(prove::ProveArgs),
     /// Measure the area, and the speed, of card, channel and blocks with yosys and nextpnr
     Area(area::AreaArgs),
+    /// Put a card's Verilog through every synthesis flow of yosys, and count what it complains about
+    Flows(flows::FlowsArgs),
     /// Measure the simulators, this project's and others
     Bench(bench::BenchArgs),
     /// Run thousands of cases side by side and check every frame
@@ -372,6 +376,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
         Some(Command::Prove(arguments)) => prove::run(&arguments),
         Some(Command::Area(arguments)) => area::run(&arguments),
+        Some(Command::Flows(arguments)) => flows::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments).map(with_engine),
         Some(Command::Campaign(arguments)) => campaign::run(&arguments).map(with_engine),
         Some(Command::Shmoo(arguments)) => shmoo::run(&arguments).map(with_engine),

@@ -3,4 +3,5 @@
 mod benches;
 pub mod configurations;
 mod emissions;
+mod flows;
 pub mod table;

@@ -1,0 +1,230 @@
+//! A card's Verilog through every flow of synthesis that yosys has: what comes out, and what it complains about.
+
+use super::{run_for_all, version, YOSYS};
+use crate::artifact::{self, Artifact};
+use crate::error::GenError;
+use crate::scratch;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A flow: its name, and the yosys command without the top module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flow {
+    /// Short name.
+    pub name: &'static str,
+    /// The yosys command; the top module is added.
+    pub synth: &'static str,
+}
+
+const fn flow(name: &'static str, synth: &'static str) -> Flow {
+    Flow { name, synth }
+}
+
+/// All flows of yosys 0.70 for devices that a card could be on: those for FPGAs of which it knows cells.
+pub const FLOWS: [Flow; 14] = [
+    flow("xc6s", "synth_xilinx -family xc6s"),
+    flow("xc7", "synth_xilinx -family xc7"),
+    flow("ecp5", "synth_ecp5"),
+    flow("ice40", "synth_ice40"),
+    flow("gowin", "synth_gowin"),
+    flow("nexus", "synth_nexus"),
+    flow("machxo2", "synth_lattice -family xo2"),
+    flow("cyclonev", "synth_intel_alm -family cyclonev"),
+    flow("efinix", "synth_efinix"),
+    flow("pp3", "synth_quicklogic -family pp3"),
+    flow("qlf", "synth_quicklogic -family qlf_k6n10f"),
+    flow("gatemate", "synth_gatemate"),
+    flow("anlogic", "synth_anlogic"),
+    flow("polarfire", "synth_microchip -family polarfire"),
+];
+
+/// Most kinds of cells that a row names.
+const KINDS: usize = 4;
+
+/// What came of a flow.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Flowed {
+    /// Name of the flow.
+    pub flow: &'static str,
+    /// Its yosys command.
+    pub synth: &'static str,
+    /// Cells of each kind.
+    pub cells: BTreeMap<String, u64>,
+    /// What yosys complains about, but for its own files.
+    pub warnings: Vec<String>,
+    /// Kinds of cells that the flow has left as no device has them, and latches.
+    pub wrong: Vec<String>,
+}
+
+impl Flowed {
+    /// Whether nothing is to be complained about.
+    pub fn is_clean(&self) -> bool {
+        self.warnings.is_empty() && self.wrong.is_empty()
+    }
+
+    /// The kinds that there are most of.
+    fn most(&self) -> String {
+        let mut cells: Vec<_> = self.cells.iter().collect();
+        cells.sort_by_key(|(name, count)| (std::cmp::Reverse(**count), (*name).clone()));
+        let cells = cells.iter().take(KINDS);
+        let cells = cells.map(|(name, count)| format!("{name} {count}"));
+        cells.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// All flows of one card.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Flows {
+    /// Name of the card.
+    pub name: String,
+    /// The tool, as it tells its version.
+    pub tool: String,
+    /// One by one.
+    pub flows: Vec<Flowed>,
+}
+
+impl Flows {
+    /// What is to be complained about, a line each.
+    pub fn complaints(&self) -> Vec<String> {
+        let each = self.flows.iter().flat_map(|flowed| {
+            let wrong = flowed.wrong.iter().map(|kind| format!("{kind} is left"));
+            let all = flowed.warnings.iter().cloned().chain(wrong);
+            all.map(|what| format!("{}: {what}", flowed.flow))
+        });
+        each.collect()
+    }
+}
+
+impl fmt::Display for Flows {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "| flow | command | most of its cells | warnings |")?;
+        writeln!(f, "|---|---|---|---|")?;
+        for flowed in &self.flows {
+            writeln!(
+                f,
+                "| {} | `{}` | {} | {} |",
+                flowed.flow,
+                flowed.synth,
+                flowed.most(),
+                flowed.warnings.len() + flowed.wrong.len()
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// A complaint of yosys about what it was given; none of a line that says something else, or complains about a file of its own.
+fn warning(line: &str) -> Option<String> {
+    let (before, text) = line.split_once("Warning: ")?;
+    let is_own = before.starts_with("/share/") || before.contains("/share/yosys/");
+    (!is_own).then(|| format!("{before}{}", text.trim()))
+}
+
+/// Cells of these names are none of a device, or are latches.
+fn is_wrong(kind: &str) -> bool {
+    // What yosys keeps for the names of scopes is no logic.
+    let is_unmapped = kind.starts_with('$') && kind != "$scopeinfo";
+    is_unmapped || kind.to_ascii_uppercase().contains("LATCH") || kind.starts_with("LD")
+}
+
+/// Puts the module `top` of these files through a flow.
+pub fn through(files: &[Artifact], top: &str, flow: Flow) -> Result<Flowed, GenError> {
+    let scratch = scratch::folder()?;
+    let folder = scratch.path();
+    artifact::write(folder, files, scratch::REMEDY)?;
+    let mut names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    names.sort_unstable();
+    let script = format!(
+        "read_verilog {}; {} -top {top}; tee -q -o stat.json stat -json",
+        names.join(" "),
+        flow.synth
+    );
+    let said = run_for_all(YOSYS, folder, &["-q", "-p", &script])?;
+    let stat = scratch::read(&folder.join("stat.json"))?;
+    let stat: Value =
+        serde_json::from_str(&stat).map_err(|e| GenError::fault("stat of yosys", &e))?;
+    let counts = stat["design"]["num_cells_by_type"].as_object();
+    let counts = counts.ok_or_else(|| GenError::fault("stat of yosys", &"it counts no cells"))?;
+    let counts = counts
+        .iter()
+        .map(|(kind, count)| (kind.clone(), count.as_u64().unwrap_or(0)));
+    let cells: BTreeMap<String, u64> = counts.collect();
+    Ok(Flowed {
+        flow: flow.name,
+        synth: flow.synth,
+        warnings: said.lines().filter_map(warning).collect(),
+        wrong: cells
+            .keys()
+            .filter(|kind| is_wrong(kind))
+            .cloned()
+            .collect(),
+        cells,
+    })
+}
+
+/// Flows of these names, all if there are none; an error for a name that is none.
+pub fn named(names: &[String]) -> Result<Vec<Flow>, GenError> {
+    let one = |name: &String| {
+        let found = FLOWS.iter().find(|flow| flow.name == name);
+        found.copied().ok_or_else(|| {
+            let known = FLOWS.map(|flow| flow.name).join(", ");
+            GenError::input(format!(
+                "--only = {name:?}: no such flow; known flows: {known}"
+            ))
+        })
+    };
+    match names {
+        [] => Ok(FLOWS.to_vec()),
+        names => names.iter().map(one).collect(),
+    }
+}
+
+/// Puts a card through flows; `begin` is told each.
+pub fn all(
+    name: &str,
+    files: &[Artifact],
+    flows: &[Flow],
+    begin: &dyn Fn(&str),
+) -> Result<Flows, GenError> {
+    let tool = version()?;
+    let one = |flow: &Flow| {
+        begin(&format!("{name}: {}", flow.name));
+        through(files, name, *flow)
+    };
+    Ok(Flows {
+        name: name.to_owned(),
+        tool,
+        flows: flows.iter().map(one).collect::<Result<_, _>>()?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn complaints_about_what_was_given_count() {
+        let own = "/share/xilinx/brams_xc3sda_map.v:221: Warning: Range select [3:2] out of bounds";
+        assert_eq!(warning(own), None);
+        assert_eq!(warning("Warnings: 2 unique messages, 2 total"), None);
+        let given = "card.v:7: Warning: Range select [3:2] out of bounds";
+        let told = "card.v:7: Range select [3:2] out of bounds".to_owned();
+        assert_eq!(warning(given), Some(told));
+        assert_eq!(
+            warning("Warning: wire is undriven"),
+            Some("wire is undriven".into())
+        );
+    }
+
+    #[test]
+    fn what_no_device_has_is_wrong() {
+        for kind in ["$_DLATCH_P_", "$mem_v2", "LDCE", "TRELLIS_LATCH"] {
+            assert!(is_wrong(kind), "{kind}");
+        }
+        for kind in ["LUT4", "$scopeinfo", "FDRE", "MISTRAL_FF"] {
+            assert!(!is_wrong(kind), "{kind}");
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! `flows`: a card's Verilog through every synthesis flow of yosys.
+
+use super::work::Steps;
+use super::{to_json, Outcome, SourceArgs};
+use crate::area::flows;
+use crate::config::Configuration;
+use crate::error::GenError;
+use crate::readers::is_core;
+use clap::Args;
+
+/// Arguments of `flows`.
+///
+/// Exit code 1 when yosys complains about the card, or leaves cells that no device has.
+#[derive(Args)]
+pub struct FlowsArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// Only these flows, by name
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    only: Vec<String>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &FlowsArgs) -> Result<Outcome, GenError> {
+    let only = flows::named(&arguments.only)?;
+    let (name, files) = match arguments.source.load_any_on(None)? {
+        Configuration::Card(card) => (card.name.clone(), crate::emit(&card)?),
+        Configuration::Receiver(receiver) => {
+            (receiver.name.clone(), crate::t_format::emit(&receiver)?)
+        }
+    };
+    let files: Vec<_> = files.into_iter().filter(is_core).collect();
+    let steps = Steps::new(None);
+    let found = flows::all(&name, &files, &only, &|step| steps.begin(step))?;
+    drop(steps);
+    let complaints = found.complaints();
+    let stdout = match arguments.json {
+        true => to_json(&found)?,
+        false => found.to_string(),
+    };
+    Ok(Outcome {
+        exit_code: u8::from(!complaints.is_empty()),
+        messages: complaints,
+        ..Outcome::good(stdout)
+    })
+}
