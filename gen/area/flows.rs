@@ -2,7 +2,9 @@
 
 use super::{run_for_all, version, YOSYS};
 use crate::artifact::{self, Artifact};
+use crate::config::Configuration;
 use crate::error::GenError;
+use crate::readers::is_core;
 use crate::scratch;
 use serde::Serialize;
 use serde_json::Value;
@@ -16,14 +18,20 @@ pub struct Flow {
     pub name: &'static str,
     /// The yosys command; the top module is added.
     pub synth: &'static str,
+    /// Registers of its devices have start values.
+    pub starts: bool,
 }
 
 const fn flow(name: &'static str, synth: &'static str) -> Flow {
-    Flow { name, synth }
+    Flow {
+        name,
+        synth,
+        starts: true,
+    }
 }
 
-/// All flows of yosys 0.70 for devices that a card could be on: those for FPGAs of which it knows cells.
-pub const FLOWS: [Flow; 14] = [
+/// All flows of yosys 0.70 for FPGAs but one: mapping for PolarPro 3 (`synth_quicklogic -family pp3`) needs more stack than WebAssembly has.
+pub const FLOWS: [Flow; 13] = [
     flow("xc6s", "synth_xilinx -family xc6s"),
     flow("xc7", "synth_xilinx -family xc7"),
     flow("ecp5", "synth_ecp5"),
@@ -33,13 +41,17 @@ pub const FLOWS: [Flow; 14] = [
     flow("machxo2", "synth_lattice -family xo2"),
     flow("cyclonev", "synth_intel_alm -family cyclonev"),
     flow("efinix", "synth_efinix"),
-    flow("pp3", "synth_quicklogic -family pp3"),
     flow("qlf", "synth_quicklogic -family qlf_k6n10f"),
     flow("gatemate", "synth_gatemate"),
     flow("anlogic", "synth_anlogic"),
-    flow("polarfire", "synth_microchip -family polarfire"),
+    Flow {
+        starts: false,
+        ..flow("polarfire", "synth_microchip -family polarfire")
+    },
 ];
 
+/// What flows that ask for it are told, in ps.
+const CLOCK_PS: u32 = 10_000;
 /// Most kinds of cells that a row names.
 const KINDS: usize = 4;
 
@@ -77,8 +89,6 @@ impl Flowed {
 /// All flows of one card.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Flows {
-    /// Name of the card.
-    pub name: String,
     /// The tool, as it tells its version.
     pub tool: String,
     /// One by one.
@@ -124,8 +134,8 @@ fn warning(line: &str) -> Option<String> {
 
 /// Cells of these names are none of a device, or are latches.
 fn is_wrong(kind: &str) -> bool {
-    // What yosys keeps for the names of scopes is no logic.
-    let is_unmapped = kind.starts_with('$') && kind != "$scopeinfo";
+    // A flow for VPR ends with tables of this name.
+    let is_unmapped = kind.starts_with('$') && kind != "$lut";
     is_unmapped || kind.to_ascii_uppercase().contains("LATCH") || kind.starts_with("LD")
 }
 
@@ -136,8 +146,9 @@ pub fn through(files: &[Artifact], top: &str, flow: Flow) -> Result<Flowed, GenE
     artifact::write(folder, files, scratch::REMEDY)?;
     let mut names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
     names.sort_unstable();
+    // One flow wants to be told a clock.
     let script = format!(
-        "read_verilog {}; {} -top {top}; tee -q -o stat.json stat -json",
+        "read_verilog {}; scratchpad -set abc9.D {CLOCK_PS}; {} -top {top}; tee -q -o stat.json stat -json",
         names.join(" "),
         flow.synth
     );
@@ -150,7 +161,8 @@ pub fn through(files: &[Artifact], top: &str, flow: Flow) -> Result<Flowed, GenE
     let counts = counts
         .iter()
         .map(|(kind, count)| (kind.clone(), count.as_u64().unwrap_or(0)));
-    let cells: BTreeMap<String, u64> = counts.collect();
+    // What yosys keeps for the names of scopes is no logic.
+    let cells: BTreeMap<String, u64> = counts.filter(|(kind, _)| kind != "$scopeinfo").collect();
     Ok(Flowed {
         flow: flow.name,
         synth: flow.synth,
@@ -181,21 +193,39 @@ pub fn named(names: &[String]) -> Result<Vec<Flow>, GenError> {
     }
 }
 
+/// Name and core of a configuration for a flow: without start values where its devices have none.
+pub fn core(
+    configuration: &Configuration,
+    flow: Flow,
+) -> Result<(String, Vec<Artifact>), GenError> {
+    let (name, files) = match configuration {
+        Configuration::Card(card) => {
+            let mut card = card.clone();
+            card.card.initial_values &= flow.starts;
+            (card.name.clone(), crate::emit(&card)?)
+        }
+        Configuration::Receiver(receiver) => {
+            let mut receiver = receiver.clone();
+            receiver.initial_values &= flow.starts;
+            (receiver.name.clone(), crate::t_format::emit(&receiver)?)
+        }
+    };
+    Ok((name, files.into_iter().filter(is_core).collect()))
+}
+
 /// Puts a card through flows; `begin` is told each.
 pub fn all(
-    name: &str,
-    files: &[Artifact],
+    configuration: &Configuration,
     flows: &[Flow],
     begin: &dyn Fn(&str),
 ) -> Result<Flows, GenError> {
-    let tool = version()?;
     let one = |flow: &Flow| {
+        let (name, files) = core(configuration, *flow)?;
         begin(&format!("{name}: {}", flow.name));
-        through(files, name, *flow)
+        through(&files, &name, *flow)
     };
     Ok(Flows {
-        name: name.to_owned(),
-        tool,
+        tool: version()?,
         flows: flows.iter().map(one).collect::<Result<_, _>>()?,
     })
 }
@@ -223,7 +253,7 @@ mod tests {
         for kind in ["$_DLATCH_P_", "$mem_v2", "LDCE", "TRELLIS_LATCH"] {
             assert!(is_wrong(kind), "{kind}");
         }
-        for kind in ["LUT4", "$scopeinfo", "FDRE", "MISTRAL_FF"] {
+        for kind in ["LUT4", "$lut", "FDRE", "MISTRAL_FF"] {
             assert!(!is_wrong(kind), "{kind}");
         }
     }

@@ -3,9 +3,7 @@
 use super::work::Steps;
 use super::{to_json, Outcome, SourceArgs};
 use crate::area::flows;
-use crate::config::Configuration;
 use crate::error::GenError;
-use crate::readers::is_core;
 use clap::Args;
 
 /// Arguments of `flows`.
@@ -26,15 +24,9 @@ pub struct FlowsArgs {
 /// Runs the command.
 pub fn run(arguments: &FlowsArgs) -> Result<Outcome, GenError> {
     let only = flows::named(&arguments.only)?;
-    let (name, files) = match arguments.source.load_any_on(None)? {
-        Configuration::Card(card) => (card.name.clone(), crate::emit(&card)?),
-        Configuration::Receiver(receiver) => {
-            (receiver.name.clone(), crate::t_format::emit(&receiver)?)
-        }
-    };
-    let files: Vec<_> = files.into_iter().filter(is_core).collect();
+    let configuration = arguments.source.load_any_on(None)?;
     let steps = Steps::new(None);
-    let found = flows::all(&name, &files, &only, &|step| steps.begin(step))?;
+    let found = flows::all(&configuration, &only, &|step| steps.begin(step))?;
     drop(steps);
     let complaints = found.complaints();
     let stdout = match arguments.json {

@@ -5,24 +5,17 @@ use crate::passed::Check;
 use crate::program::{bad, good, Dir};
 use crate::verilog::area::require;
 use endat_gen::area::flows::{self, Flow, FLOWS};
-use endat_gen::config::{load_any_preset, Configuration, PRESETS, RECEIVER_PRESETS};
-use endat_gen::readers::is_core;
+use endat_gen::config::{load_any_preset, PRESETS, RECEIVER_PRESETS};
 
 /// Puts the card of a preset through flows; what is wrong.
 fn complaints(preset: &str, flows: &[Flow]) -> Vec<String> {
-    let (name, mut files) = match load_any_preset(preset).unwrap() {
-        Configuration::Card(card) => (card.name.clone(), endat_gen::emit(&card).unwrap()),
-        Configuration::Receiver(receiver) => (
-            receiver.name.clone(),
-            endat_gen::t_format::emit(&receiver).unwrap(),
-        ),
-    };
-    files.retain(is_core);
+    let configuration = load_any_preset(preset).unwrap();
     on_both_cores(flows, |_, flow| {
+        let (_, files) = flows::core(&configuration, *flow).unwrap();
         let check = Check::new(format!("{preset} through {}", flow.name)).files(&files);
         let check = check.text(flow.synth).source("gen/area/flows.rs");
         check.complaint_unless_passed(|| {
-            let found = flows::all(&name, &files, &[*flow], &|_| ()).unwrap();
+            let found = flows::all(&configuration, &[*flow], &|_| ()).unwrap();
             let cells: u64 = found.flows[0].cells.values().sum();
             assert!(cells > 500, "{preset}: {}: {cells} cells", flow.name);
             let wrong = found.complaints();
@@ -66,11 +59,11 @@ fn what_a_flow_says_of_bad_verilog_is_told() {
     if !require("a flow of yosys") {
         return;
     }
-    let text = "module card (input wire a, input wire d, output reg q, output wire z);\n    always @* if (a) q = d;\n    assign z = d & q[3];\nendmodule\n";
+    let text = "module card (input wire a, input wire d, output reg q, output wire z);\n    always @(posedge a) q <= d;\n    assign z = d & q[3];\nendmodule\n";
     let files = [endat_gen::artifact::Artifact::new("card.v", text)];
     let ice40 = flows::named(&["ice40".to_owned()]).unwrap();
-    let found = flows::all("card", &files, &ice40, &|_| ()).unwrap();
-    assert!(!found.flows[0].is_clean(), "{found}");
+    let found = flows::through(&files, "card", ice40[0]).unwrap();
+    assert!(!found.warnings.is_empty(), "{found:?}");
     let dir = Dir::new("flows");
     let config = dir.write("card.toml", good(&["presets", "--show", "demo"]).as_bytes());
     let table = good(&["flows", "--config", &config, "--only", "ice40"]);
