@@ -169,9 +169,10 @@ pub fn fill(project: &Project, board: &Board, words: &[String]) -> Result<Vec<St
         device => Serde(&board.device),
         board => context! { part => board.part.as_str() },
     };
+    let place = format!("{}/family.toml: build", board.family.name);
     let words = words.iter();
     words
-        .map(|word| board.family.fill("family.toml: build", word, &facts))
+        .map(|word| board.family.fill(&place, word, &facts))
         .collect()
 }
 
@@ -181,7 +182,8 @@ pub fn file_name(project: &Project, board: &Board, maker: Maker<'_>) -> Result<S
     let name = fill(project, board, words)?.concat();
     match name.contains(['/', '\\']) {
         true => Err(GenError::input(format!(
-            "bitstream = {name:?}: is a path; the family's file gives a name"
+            "{}/family.toml: bitstream = {name:?}: is a path; give a name without a folder",
+            board.family.name
         ))),
         false => Ok(name),
     }
@@ -226,6 +228,12 @@ pub fn build(
     artifact::write(folder, artifacts, scratch::REMEDY)?;
     let fill = |words: &[String]| fill(project, board, words);
     let run = |words: &[String]| run(folder, words, &build.install);
+    let tools = [&build.place, &build.pack].map(|words| words.first().map_or("", String::as_str));
+    for tool in ["yosys"].into_iter().chain(tools) {
+        if !is_there(tool) {
+            return Err(not_there(tool, &build.install));
+        }
+    }
     progress(format!("{name}: synthesis for {}", board.family.title));
     // The test bench is not for a device.
     let sources = artifacts
@@ -240,7 +248,11 @@ pub fn build(
         build.synthesis
     );
     run(&["yosys", "-q", "-p", &script].map(str::to_owned))?;
-    output_cells::mark_all(folder, project, &build.output_registers)?;
+    for signal in output_cells::mark_all(folder, project, &build.output_registers)? {
+        progress(format!(
+            "{name}: {signal} has no register of its own, and so none in its output cell"
+        ));
+    }
     let mhz = decimal(project.card.system_hz as f64 / 1e6, 6);
     let mut best: Option<Attempt> = None;
     let mut reached_mhz = vec![];
@@ -340,9 +352,23 @@ fn run_or(
         }
         return Err(failed(&name, &ran, remedy));
     }
-    Err(GenError::input(format!(
+    Err(not_there(tool, install))
+}
+
+/// Whether a tool is installed, under either of its names.
+fn is_there(tool: &str) -> bool {
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    let has =
+        |name: &str| std::env::split_paths(&folders).any(|folder| folder.join(name).is_file());
+    let ends = ["", std::env::consts::EXE_SUFFIX];
+    ends.iter()
+        .any(|end| has(&format!("yowasp-{tool}{end}")) || has(&format!("{tool}{end}")))
+}
+
+fn not_there(tool: &str, install: &str) -> GenError {
+    GenError::input(format!(
         "{tool}: neither yowasp-{tool} nor {tool} is installed; install it: `{install}`"
-    )))
+    ))
 }
 
 /// What a tool says that did not do it.
@@ -402,7 +428,13 @@ pub fn report_of(
 ) -> Result<Value, GenError> {
     let path = folder.join(report_name(project));
     let wrong = |what: &str| GenError::input(format!("{}: {what}; build it again", path.display()));
-    let text = std::fs::read_to_string(&path).map_err(|e| wrong(&format!("cannot read: {e}")))?;
+    let text = std::fs::read_to_string(&path).map_err(|e| {
+        GenError::input(format!(
+            "{}: cannot read: {e}; `build` makes it, and so does the vendor's tool by {}_build.tcl in that folder",
+            path.display(),
+            project.name
+        ))
+    })?;
     let report: Value =
         serde_json::from_str(&text).map_err(|e| wrong(&format!("is no report: {e}")))?;
     if report["configuration"] != project.hash.as_str() || report["part"] != board.part.as_str() {

@@ -49,30 +49,31 @@ fn mark(module: &mut Value, port: &str, attributes: &[String]) -> bool {
     true
 }
 
-/// Marks the registers in the netlist of yosys.
+/// Marks the registers in the netlist of yosys. Returns the outputs that have none of their own.
 pub(super) fn mark_all(
     folder: &Path,
     project: &Project,
     attributes: &[String],
-) -> Result<(), GenError> {
+) -> Result<Vec<String>, GenError> {
     if attributes.is_empty() {
-        return Ok(());
+        return Ok(vec![]);
     }
     let file = format!("{}.json", project.name);
     let text = scratch::read(&folder.join(&file))?;
     let mut netlist: Value =
         serde_json::from_str(&text).map_err(|e| GenError::fault("netlist of yosys", &e))?;
     let module = &mut netlist["modules"][format!("{}_top", project.name)];
-    for pin in project
+    let outputs = project
         .pins
         .iter()
-        .filter(|pin| pin.kind == Kind::Transceiver)
-    {
-        mark(module, &pin.signal, attributes);
-    }
+        .filter(|pin| pin.kind == Kind::Transceiver);
+    let signals = outputs.map(|pin| pin.signal.clone());
+    let others = signals
+        .filter(|signal| !mark(module, signal, attributes))
+        .collect();
     let marked = Artifact::new(file, netlist.to_string());
     artifact::write(folder, &[marked], scratch::REMEDY)?;
-    Ok(())
+    Ok(others)
 }
 
 #[cfg(test)]

@@ -17,6 +17,8 @@ use std::path::Path;
 pub const CYCLES: usize = 60_000;
 /// What is kept of the best seed for a netlist that is read.
 const PLACED: &str = "best_placed.json";
+/// How the name of the netlist ends that nextpnr writes.
+const PLACED_END: &str = "_placed.json";
 /// The device as plain Verilog.
 const DEVICE: &str = "device.v";
 /// The module that icebox_vlog writes.
@@ -76,7 +78,12 @@ pub fn way(project: &Project, board: &Board, build: &Build) -> Result<ReadBack, 
             pin.signal
         ));
     }
+    let netlist = format!("{{{{ name }}}}{}", PLACED_END);
     match build.read_back {
+        Some(ReadBack::Netlist(_)) if !build.place.contains(&netlist) => wrong(format!(
+            "nextpnr writes no netlist: `place` in {}/family.toml has no \"--write\", \"{netlist}\"",
+            board.family.name
+        )),
         Some(way) => Ok(way),
         None => wrong(format!(
             "what open tools make for {} cannot be read back, its family.toml has no read_back",
@@ -101,7 +108,7 @@ fn pins(project: &Project) -> Pins {
 /// Keeps what is read of the seed that was just placed.
 pub(super) fn keep(folder: &Path, name: &str, way: ReadBack) -> Result<(), GenError> {
     if let ReadBack::Netlist(_) = way {
-        let path = folder.join(format!("{name}_placed.json"));
+        let path = folder.join(format!("{name}{PLACED_END}"));
         std::fs::copy(&path, folder.join(PLACED)).map_err(|e| {
             let remedy = "let `place` in the family's file write it";
             GenError::io("read", &path, &e, remedy)
@@ -241,7 +248,8 @@ const ECP5: Cells = Cells {
 const GOWIN: Cells = Cells {
     library: Some("+/gowin/cells_sim.v"),
     models: include_str!("read_back/gowin.v"),
-    high: &[],
+    // The first adder of a chain is connected to the last one of another in the device: it must not listen.
+    high: &[("ALU", &["CIN"])],
     chosen: &[],
 };
 

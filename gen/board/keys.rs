@@ -61,7 +61,7 @@ keys! {
     FIXED = free(&["fixed"], "SIGNAL", "pin of a signal that the board itself wires").named(super::signals);
     WING = free(&["wing"], "SIGNAL", "usual place of another one, by position or pin").named(super::signals);
     OWN_STANDARD = free(&["iostandards"], "PIN", "I/O standard of a pin that has another one");
-    SUPPLY = Key::number(BANK, "supply_mv", "supply of a bank, where one of its pins could be given an I/O standard for another")
+    SUPPLY = Key::number(BANK, "supply_mv", "supply of a bank, which its pins' I/O standards must be for")
         .within(|_, _| Limits::new(SUPPLY_MV)).required("1_800");
     BANK_PINS = Key::texts(BANK, "pins", "pins of that bank, as far as they are known; pins of no bank are not checked").required("[\"10\", \"11\"]");
     DEVICE_WORD = free(&["device"], "WORD", "what the family's tools ask for besides: its `family.toml` has an example of each");

@@ -4,17 +4,16 @@ mod banks;
 mod clock;
 mod family;
 mod keys;
+mod making;
 mod package;
 mod ports;
 mod read;
 mod shipped;
 
 pub use clock::{ClockManager, Feedback, Pll};
-pub use family::{
-    Build, Family, Placed, ReadBack, Vendor, CLOCK, CLOCK_VHDL, CONSTRAINTS, FUSESOC, README,
-    TIMING, VENDOR,
-};
+pub use family::{Family, CLOCK, CLOCK_VHDL, CONSTRAINTS, FUSESOC, README, TIMING, VENDOR};
 pub use keys::{page, BOARD_KEYS};
+pub use making::{Build, Placed, ReadBack, Vendor};
 pub use package::Package;
 pub use ports::{
     card_ports, signals, Assignment, Kind, MorePorts, OSCILLATOR_PORT, PARALLEL_ADDRESS_LINES,

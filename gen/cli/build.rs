@@ -50,7 +50,9 @@ pub struct FlashArgs {
 /// Prints the command that loads a bitstream that has been built.
 pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
     let (project, board, folder) = on_board(&arguments.emission)?;
-    let maker = Maker::of(&board, false)?;
+    let language = arguments.emission.language()?;
+    // Open tools read Verilog.
+    let maker = Maker::of(&board, language == Language::Vhdl)?;
     let name = bitstream::file_name(&project, &board, maker)?;
     let path = folder.join(&name);
     let Some(command) = bitstream::loading(&board, &path, arguments.write_flash) else {
@@ -59,7 +61,12 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
             board.name
         )));
     };
-    let make = "make it: the same command with `build` instead of `flash`";
+    let make = match (maker, language) {
+        (Maker::Vendor(_), Language::Vhdl) => {
+            "make it: the same command with `build --vendor` instead of `flash`"
+        }
+        _ => "make it: the same command with `build` instead of `flash`",
+    };
     let is_there = std::fs::metadata(&path).is_ok_and(|file| file.is_file() && file.len() > 0);
     if !is_there {
         return Err(GenError::input(format!(
@@ -67,7 +74,6 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
             path.display()
         )));
     }
-    let language = arguments.emission.language()?;
     be_of(&path, &folder, &crate::emit_in(&project, language)?, make)?;
     bitstream::report_of(&project, &board, &folder, &name)?;
     Ok(Outcome::good(command + "\n"))
@@ -125,9 +131,13 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     };
     let language = arguments.emission.language()?;
     if let (Maker::Open(_), Language::Vhdl) = (maker, language) {
-        return Err(GenError::input(
-            "--language = vhdl: open tools read Verilog; leave it out, or take the vendor's tool with --vendor",
-        ));
+        let vendor = match board.family.vendor {
+            Some(_) => ", or take the vendor's tool with --vendor",
+            None => "",
+        };
+        return Err(GenError::input(format!(
+            "--language = vhdl: open tools read Verilog; leave it out{vendor}"
+        )));
     }
     let artifacts = crate::emit_in(&project, language)?;
     let bitstream = bitstream::file_name(&project, &board, maker)?;

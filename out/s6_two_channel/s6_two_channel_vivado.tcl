@@ -45,6 +45,11 @@ set core [ipx::current_core]
 ipx::remove_all_bus_interface $core
 ipx::remove_all_memory_map $core
 set_property name s6_two_channel $core
+# Packaging knows one part; the core is for all that Vivado knows.
+set_property supported_families {
+    spartan7 Production artix7 Production kintex7 Production virtex7 Production zynq Production
+    kintexu Production virtexu Production zynquplus Production kintexuplus Production virtexuplus Production
+} $core
 set_property version 0.2.0 $core
 set_property display_name "EnDat acquisition card, 2 channels" $core
 set_property description "Compatible with EnDat 2.1/2.2; configuration 6612dd16497a" $core

@@ -247,6 +247,7 @@ fn a_family_of_ones_own_is_a_folder_and_what_is_wrong_with_it_is_told() {
         ("constraints = \"lpf\"", "constraints = \"../lpf\"", "constraints = \"../lpf\": is no end of a file's name"),
         ("LVCMOS18 = 1_800", "LVCMOS18 = 18", "supplies.LVCMOS18 = 18: outside 1000..3300; choose a value in that range"),
         ("LVCMOS18 = 1_800", "LVCMOS18 = \"1.8 V\"", "supplies.LVCMOS18 = \"1.8 V\": is a string, must be a whole number"),
+        ("\"ioff_dir=output\"", "\"ioff dir=output\"", "build.output_registers = \"ioff dir=output\": is no attribute, NAME=VALUE of letters, digits and _; write, for example, ioff_dir=output"),
         ("led = ", "leds = ", "attributes.led: is missing; add"),
         ("pack = [\"ecppack\"", "pack = [\"rm\"", "build.pack = \"rm\": does not begin with a tool for it"),
         ("    \"nextpnr-ecp5\"", "    \"/bin/nextpnr-ecp5\"", "build.place = \"/bin/nextpnr-ecp5\": does not begin with a tool for it"),

@@ -157,6 +157,15 @@ fn what_cannot_be_read_back_is_refused_first() {
         own.contains("--simulate: what open tools make for ECP5 cannot be read back, its family.toml has no read_back"),
         "{own}"
     );
+    let family = fs::read_to_string(dir.0.join("mine/family.toml")).unwrap();
+    let family = family.replace("install = ", "read_back = \"ecp5_netlist\"\ninstall = ");
+    let family = family.replace("\"--write\", \"{{ name }}_placed.json\",", "");
+    dir.write("mine/family.toml", family.as_bytes());
+    let own = told(&["--board", &board]);
+    assert!(
+        own.contains("--simulate: nextpnr writes no netlist: `place` in ./mine/family.toml has no \"--write\", \"{{ name }}_placed.json\"; leave it out"),
+        "{own}"
+    );
     let vivado = told(&["--board", "arty_a7_35"]);
     assert!(
         vivado.contains("--simulate: Vivado makes this bitstream"),

@@ -105,12 +105,20 @@ fn every_script_of_a_vendor_runs_to_its_end_and_its_report_is_read() {
         assert_eq!(code, Some(2), "{board}: {told}");
         assert!(told.contains("hold time"), "{board}: {told}");
     }
-    // A bound that only ISE tells apart from its clocks.
+    // A bound that these two tell apart from their clocks.
     let out = dir.path("o");
-    let arguments = ["--board", "papilio_pro", "--out", &out, "--name", "card"];
-    let (code, _, told) = build(&arguments, &path, Some("FAR"));
-    assert_eq!(code, Some(2), "{told}");
-    assert!(told.contains("1 ways of asynchronous inputs"), "{told}");
+    for (board, wanted) in [
+        ("papilio_pro", "1 ways of asynchronous inputs"),
+        (
+            "arty_a7_35",
+            "an input is too far from its first register, by -1.5 ns",
+        ),
+    ] {
+        let arguments = ["--board", board, "--out", &out, "--name", "card"];
+        let (code, _, told) = build(&arguments, &path, Some("FAR"));
+        assert_eq!(code, Some(2), "{told}");
+        assert!(told.contains(wanted), "{told}");
+    }
     let scripts = boards().into_iter().filter(|b| b.family.vendor.is_some());
     let families: std::collections::BTreeSet<_> = scripts.map(|b| b.family.name).collect();
     assert_eq!(
@@ -165,6 +173,22 @@ fn every_script_of_a_vendor_takes_vhdl() {
     let flash = [&["flash"], &arguments[..]].concat();
     assert!(good(&flash).contains("openFPGALoader --board arty_a7_35t"));
     assert!(bad(&[&["flash"], &arguments[2..]].concat(), 2).contains("version or --language ("));
+    let none = [
+        "flash",
+        "--board",
+        "ulx3s",
+        "--language",
+        "vhdl",
+        "--out",
+        &dir.path("none"),
+    ];
+    assert!(bad(&none, 2).contains("the same command with `build --vendor`"));
+    let told = bad(&["build", "--board", "icebreaker", "--language", "vhdl"], 2);
+    assert!(
+        told.trim_end()
+            .ends_with("open tools read Verilog; leave it out"),
+        "{told}"
+    );
     let told = bad(&["build", "--board", "ulx3s", "--language", "vhdl"], 2);
     assert!(
         told.contains("--language = vhdl: open tools read Verilog; leave it out"),

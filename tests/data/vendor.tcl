@@ -1,10 +1,11 @@
 #!/usr/bin/env tclsh
 # Stand-ins for the shells of vendors' tools, and for the tools that ISE's shell starts: under each name, its commands as Tcl sees them,
-# called with words that they know and files that exist, and its reports in its form. SLOW, HOLD and FAR (inputs, ISE) in the environment spoil the timing.
+# called with words that they know and files that exist, and its reports in its form. SLOW, HOLD and FAR (inputs; Vivado, ISE) in the environment spoil the timing.
 
 set shell [file tail $argv0]
 set slow [info exists ::env(SLOW)]
 set hold [info exists ::env(HOLD)]
+set far [info exists ::env(FAR)]
 
 proc must {is_so text} {
     if {![uplevel 1 [list expr $is_so]]} { error $text }
@@ -60,16 +61,20 @@ switch $shell {
             must_be_whole $top
         }
         foreach step {opt_design place_design phys_opt_design route_design} { proc $step {} "lappend ::steps $step" }
+        proc all_inputs {} { return inputs }
         proc get_clocks {} { return {osc_i pll_clk pll_feedback} }
         proc get_timing_paths args {
             if {[lindex $args 1] eq "min"} { return min }
-            must {[lindex $args 0] eq "-to"} $args
+            must {[lindex $args 0] eq "-from"} $args
+            if {[lindex $args 1] eq "inputs"} { return inputs }
+            must {[lindex $args 2] eq "-to" && [lindex $args 1] eq [lindex $args 3]} $args
             return [expr {[lindex $args 1] eq "pll_clk" ? "pll_clk" : ""}]
         }
         proc get_property {name object} {
             must {$object ne ""} "Invalid option value '' specified for 'object'."
             switch "$name $object" {
                 "SLACK pll_clk" { return [expr {$::slow ? -0.125 : 0.5}] }
+                "SLACK inputs" { return [expr {$::far ? -1.5 : 6.2}] }
                 "SLACK min" { return [expr {$::hold ? -0.2 : 0.031}] }
                 "PERIOD pll_clk" - "PERIOD osc_i" { return 10.000 }
             }
@@ -141,7 +146,6 @@ switch $shell {
         must_exist [lindex $argv 4]
         set least [expr {$slow ? 10.4 : 8.0}]
         set holds [expr {$hold ? 2 : 0}]
-        set far [expr {[info exists ::env(FAR)] ? 1 : 0}]
         leave [lindex $argv 3] "Release 14.7 Trace
 ================================================================================
 Timing constraint: TS_osc_i = PERIOD TIMEGRP \"osc_i\" 31.25 ns HIGH 50%;
