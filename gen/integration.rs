@@ -339,6 +339,7 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
         vlnv => format!("{VENDOR}:{LIBRARY}:{}:{}", core.name, env!("CARGO_PKG_VERSION")),
         mhz => decimal(fastest_hz as f64 / 1e6, 6),
         period_ns => decimal(1e9 / fastest_hz as f64, 3),
+        two_samples => core.input_hz > fastest_hz,
         input_ns => decimal(1e9 / core.input_hz as f64, 3),
         asynchronous,
         bus => Value::from(Serde(&bus)),

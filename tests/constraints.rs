@@ -265,6 +265,23 @@ fn a_line_with_two_samplers_has_half_the_way_to_them() {
             assert!(text.contains(&line), "{line}{text}");
         }
     }
+    let gowin = text_of(&of("tang_nano_9k"), "_top.sdc");
+    assert!(
+        gowin.contains("set_max_delay -from [get_ports {endat_data1_i}] 5.0505\n"),
+        "{gowin}"
+    );
+    assert!(
+        gowin.contains("set_false_path -from [get_ports {trigger_i}]\n"),
+        "{gowin}"
+    );
+    // That of the core alone, for a top of somebody's own.
+    let core = text_of(&of("arty_a7_35"), "channel.sdc");
+    assert!(core.contains("}] 5\nset_min_delay -from "), "{core}");
+    let one = text_of(&load_preset("s6_two_channel").unwrap(), "channel.sdc");
+    assert!(
+        one.contains("set_false_path -from ") && !one.contains("set_max_delay"),
+        "{one}"
+    );
 }
 
 #[test]

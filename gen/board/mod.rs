@@ -85,6 +85,13 @@ pub struct Board {
     pub start: Option<Start>,
 }
 
+/// Connector and position of a word like `A0`.
+fn parts(word: &str) -> Option<(&str, usize)> {
+    let split = word.rfind(|c: char| !c.is_ascii_digit())? + 1;
+    let (name, position) = (word.get(..split)?, word.get(split..)?);
+    Some((name, position.parse().ok()?))
+}
+
 impl Board {
     /// The board of this name; `Err` has the message.
     pub fn named(name: &str) -> Result<Self, String> {
@@ -146,10 +153,12 @@ impl Board {
         if let Some(pin) = self.by_position(&word) {
             return Ok(pin.clone());
         }
+        let is_of_connector =
+            parts(&word).is_some_and(|(name, _)| self.connectors.contains_key(name));
         match self.package.look_up(&word) {
-            Word::NoPin => Err(self.no_such_pin()),
+            Word::NoPin if !is_of_connector => Err(self.no_such_pin()),
             Word::Pin(pin) if self.is_free(&pin) => Ok(pin),
-            Word::Pin(_) => Err(format!(
+            Word::NoPin | Word::Pin(_) => Err(format!(
                 "is not on a connector of {}; {}",
                 self.name,
                 self.free_pins()
@@ -175,9 +184,7 @@ impl Board {
     }
 
     fn by_position(&self, word: &str) -> Option<&String> {
-        let split = word.rfind(|c: char| !c.is_ascii_digit())? + 1;
-        let (name, position) = (word.get(..split)?, word.get(split..)?);
-        let position: usize = position.parse().ok()?;
+        let (name, position) = parts(word)?;
         self.connectors
             .get(name)?
             .get(position)
