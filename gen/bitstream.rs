@@ -358,11 +358,9 @@ fn run_or(
 /// Whether a tool is installed, under either of its names.
 fn is_there(tool: &str) -> bool {
     let folders = std::env::var_os("PATH").unwrap_or_default();
-    let has =
-        |name: &str| std::env::split_paths(&folders).any(|folder| folder.join(name).is_file());
-    let ends = ["", std::env::consts::EXE_SUFFIX];
-    ends.iter()
-        .any(|end| has(&format!("yowasp-{tool}{end}")) || has(&format!("{tool}{end}")))
+    let names =
+        ["yowasp-", ""].map(|start| format!("{start}{tool}{}", std::env::consts::EXE_SUFFIX));
+    std::env::split_paths(&folders).any(|folder| names.iter().any(|n| folder.join(n).is_file()))
 }
 
 fn not_there(tool: &str, install: &str) -> GenError {

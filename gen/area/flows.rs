@@ -1,13 +1,12 @@
 //! A card's Verilog through every flow of synthesis that yosys has: what comes out, and what it complains about.
 
-use super::{run_for_all, version, YOSYS};
+use super::{cells_of, run_good, version, YOSYS};
 use crate::artifact::{self, Artifact};
 use crate::config::Configuration;
 use crate::error::GenError;
 use crate::readers::is_core;
 use crate::scratch;
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -71,9 +70,11 @@ pub struct Flowed {
 }
 
 impl Flowed {
-    /// Whether nothing is to be complained about.
-    pub fn is_clean(&self) -> bool {
-        self.warnings.is_empty() && self.wrong.is_empty()
+    /// What is to be complained about, a line each.
+    pub fn complaints(&self) -> Vec<String> {
+        let wrong = self.wrong.iter().map(|kind| format!("{kind} is left"));
+        let all = self.warnings.iter().cloned().chain(wrong);
+        all.map(|what| format!("{}: {what}", self.flow)).collect()
     }
 
     /// The kinds that there are most of.
@@ -98,12 +99,7 @@ pub struct Flows {
 impl Flows {
     /// What is to be complained about, a line each.
     pub fn complaints(&self) -> Vec<String> {
-        let each = self.flows.iter().flat_map(|flowed| {
-            let wrong = flowed.wrong.iter().map(|kind| format!("{kind} is left"));
-            let all = flowed.warnings.iter().cloned().chain(wrong);
-            all.map(|what| format!("{}: {what}", flowed.flow))
-        });
-        each.collect()
+        self.flows.iter().flat_map(Flowed::complaints).collect()
     }
 }
 
@@ -118,7 +114,7 @@ impl fmt::Display for Flows {
                 flowed.flow,
                 flowed.synth,
                 flowed.most(),
-                flowed.warnings.len() + flowed.wrong.len()
+                flowed.complaints().len()
             )?;
         }
         Ok(())
@@ -152,17 +148,10 @@ pub fn through(files: &[Artifact], top: &str, flow: Flow) -> Result<Flowed, GenE
         names.join(" "),
         flow.synth
     );
-    let said = run_for_all(YOSYS, folder, &["-q", "-p", &script])?;
-    let stat = scratch::read(&folder.join("stat.json"))?;
-    let stat: Value =
-        serde_json::from_str(&stat).map_err(|e| GenError::fault("stat of yosys", &e))?;
-    let counts = stat["design"]["num_cells_by_type"].as_object();
-    let counts = counts.ok_or_else(|| GenError::fault("stat of yosys", &"it counts no cells"))?;
-    let counts = counts
-        .iter()
-        .map(|(kind, count)| (kind.clone(), count.as_u64().unwrap_or(0)));
+    let said = run_good(YOSYS, folder, &["-q", "-p", &script])?.text();
+    let mut cells = cells_of(&scratch::read(&folder.join("stat.json"))?)?;
     // What yosys keeps for the names of scopes is no logic.
-    let cells: BTreeMap<String, u64> = counts.filter(|(kind, _)| kind != "$scopeinfo").collect();
+    cells.remove("$scopeinfo");
     Ok(Flowed {
         flow: flow.name,
         synth: flow.synth,

@@ -117,11 +117,7 @@ pub(crate) fn run(tool: &str, folder: &Path, arguments: &[&str]) -> Result<Strin
     run_good(tool, folder, arguments).map(|ran| ran.stdout)
 }
 
-/// Runs a tool; what it printed, complaints as well.
-fn run_for_all(tool: &str, folder: &Path, arguments: &[&str]) -> Result<String, GenError> {
-    run_good(tool, folder, arguments).map(|ran| ran.text())
-}
-
+/// Runs a tool that must do it.
 fn run_good(tool: &str, folder: &Path, arguments: &[&str]) -> Result<tools::Ran, GenError> {
     let ran = tools::run(tool, folder, arguments)?;
     if ran.is_good {
@@ -188,6 +184,16 @@ pub fn digest(files: &[Artifact], top: &str, family: &Family) -> String {
     sha256(all.as_bytes())[..16].to_owned()
 }
 
+/// Number of cells of each type that `stat -json` of yosys tells.
+fn cells_of(stat: &str) -> Result<BTreeMap<String, u64>, GenError> {
+    let fault = |e: &dyn std::fmt::Display| GenError::fault("stat of yosys", e);
+    let stat: Value = serde_json::from_str(stat).map_err(|e| fault(&e))?;
+    let counts = stat["design"]["num_cells_by_type"].as_object();
+    let counts = counts.ok_or_else(|| fault(&"it counts no cells"))?.iter();
+    let counts = counts.map(|(name, count)| (name.clone(), count.as_u64().unwrap_or(0)));
+    Ok(counts.collect())
+}
+
 /// Writes the Verilog files into a folder and synthesises the module `top` of them for a family.
 pub fn synthesise(
     folder: &Path,
@@ -200,14 +206,7 @@ pub fn synthesise(
     let file = |end: &str| folder.join(format!("{}-{top}{end}", family.name));
     let script = script_for(&names(&files), top, family);
     run(YOSYS, folder, &["-q", "-p", &script])?;
-    let stat = read(&file(".stat"))?;
-    let stat: Value = serde_json::from_str(&stat).unwrap_or_default();
-    let counts = stat["design"]["num_cells_by_type"].as_object();
-    let cells: BTreeMap<String, u64> = counts
-        .into_iter()
-        .flatten()
-        .map(|(name, count)| (name.clone(), count.as_u64().unwrap_or(0)))
-        .collect();
+    let cells = cells_of(&read(&file(".stat"))?)?;
     let count = |starts: &[&str]| {
         let counted = |name: &str| starts.iter().any(|start| name.starts_with(start));
         let found = cells.iter().filter(|(name, _)| counted(name));

@@ -2,7 +2,7 @@
 
 use super::clock::{ClockManager, Feedback};
 use super::keys;
-use super::making::{read_build, read_vendor, Build, Vendor};
+use super::making::{left_out_or_good, read_build, read_vendor, Build, Vendor};
 use super::ports::Kind;
 use super::shipped;
 use crate::error::{Diagnostic, GenError};
@@ -285,14 +285,6 @@ fn read_file(
         timing: timing.map(|end| end.value),
         templates,
     })
-}
-
-/// A table that may be left out; none if it is there and wrong.
-fn left_out_or_good<T>(table: Option<Option<T>>) -> Option<Option<T>> {
-    match table {
-        None => Some(None),
-        Some(table) => table.map(Some),
-    }
 }
 
 fn read_clock_manager(table: &Table<'_, '_>) -> Option<ClockManager> {

@@ -96,6 +96,14 @@ fn command(
     Some(words.into_iter().map(|at| at.value).collect())
 }
 
+/// What may be left out; none if it is there and wrong.
+pub(super) fn left_out_or_good<T>(table: Option<Option<T>>) -> Option<Option<T>> {
+    match table {
+        None => Some(None),
+        Some(table) => table.map(Some),
+    }
+}
+
 pub(super) fn read_vendor(table: &Table<'_, '_>) -> Option<Vendor> {
     let tool = table.required_string(&keys::VENDOR_TOOL);
     let bitstream = table.required_string(&keys::VENDOR_BITSTREAM);
@@ -165,9 +173,6 @@ pub(super) fn read_build(table: &Table<'_, '_>) -> Option<Build> {
         pack: pack?,
         bitstream: bitstream?.value,
         install: install?.value,
-        read_back: match read_back {
-            Some(known) => Some(known?),
-            None => None,
-        },
+        read_back: left_out_or_good(read_back)?,
     })
 }

@@ -61,12 +61,11 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
             board.name
         )));
     };
-    let make = match (maker, language) {
-        (Maker::Vendor(_), Language::Vhdl) => {
-            "make it: the same command with `build --vendor` instead of `flash`"
-        }
-        _ => "make it: the same command with `build` instead of `flash`",
+    let build = match language {
+        Language::Vhdl => "build --vendor",
+        Language::Verilog => "build",
     };
+    let make = format!("make it: the same command with `{build}` instead of `flash`");
     let is_there = std::fs::metadata(&path).is_ok_and(|file| file.is_file() && file.len() > 0);
     if !is_there {
         return Err(GenError::input(format!(
@@ -74,7 +73,7 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
             path.display()
         )));
     }
-    be_of(&path, &folder, &crate::emit_in(&project, language)?, make)?;
+    be_of(&path, &folder, &crate::emit_in(&project, language)?, &make)?;
     bitstream::report_of(&project, &board, &folder, &name)?;
     Ok(Outcome::good(command + "\n"))
 }

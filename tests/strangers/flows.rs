@@ -11,12 +11,12 @@ use endat_gen::config::{load_any_preset, PRESETS, RECEIVER_PRESETS};
 fn complaints(preset: &str, flows: &[Flow]) -> Vec<String> {
     let configuration = load_any_preset(preset).unwrap();
     on_both_cores(flows, |_, flow| {
-        let (_, files) = flows::core(&configuration, *flow).unwrap();
+        let (name, files) = flows::core(&configuration, *flow).unwrap();
         let check = Check::new(format!("{preset} through {}", flow.name)).files(&files);
         let check = check.text(flow.synth).source("gen/area/flows.rs");
         check.complaint_unless_passed(|| {
-            let found = flows::all(&configuration, &[*flow], &|_| ()).unwrap();
-            let cells: u64 = found.flows[0].cells.values().sum();
+            let found = flows::through(&files, &name, *flow).unwrap();
+            let cells: u64 = found.cells.values().sum();
             assert!(cells > 500, "{preset}: {}: {cells} cells", flow.name);
             let wrong = found.complaints();
             (!wrong.is_empty()).then(|| format!("{preset}: {}", wrong.join("\n")))
