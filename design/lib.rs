@@ -11,4 +11,4 @@ pub mod reg;
 pub mod verilog;
 pub mod vhdl;
 
-pub use rtl_design_macros::{kernel, ports, Block, States};
+pub use rtl_design_macros::{kernel, kernel_of_parts, kernel_parts, ports, Block, States};

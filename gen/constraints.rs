@@ -17,6 +17,7 @@ use crate::zynq;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::service::program::CLEAR_CYCLES;
 use endat_hdl::endat::timing::ABORT_US;
+use endat_regs::Protocol;
 use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
@@ -50,13 +51,23 @@ struct Port {
     bound_ns: String,
 }
 
+/// The channels that speak another protocol than EnDat, for texts.
+fn others(project: &Project) -> Vec<Value> {
+    let there = Protocol::ALL.iter().filter(|p| **p != Protocol::Endat);
+    let named = there.filter_map(|p| {
+        let channels: Vec<usize> = project.card.speakers(*p).collect();
+        (!channels.is_empty()).then(|| context! { name => p.name(), channels })
+    });
+    named.collect()
+}
+
 impl Port {
-    fn new(pin: &Assignment, project: &Project, board: &Board, t_format: &[usize]) -> Self {
+    fn new(pin: &Assignment, project: &Project, board: &Board) -> Self {
         Self {
             signal: pin.signal.clone(),
             pin: pin.pin.clone(),
             position: pin.position.clone(),
-            meaning: pin.meaning(t_format),
+            meaning: pin.meaning(project.card.protocols()),
             direction: pin.kind.direction(),
             mode: match pin.kind.direction().split(' ').next() {
                 Some("input") => "in",
@@ -183,7 +194,7 @@ fn without_board(project: &Project, is_vhdl: bool) -> Result<Vec<Artifact>, GenE
         channels => project.card.channels.len(),
         second => project.card.safety.second_interface,
         protocols => project.protocols(),
-        t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
+        others => others(project),
         quiet_ms => ABORT_US / 1_000,
         initial_values => project.card.initial_values,
         reset_cycles => RESET_CYCLES,
@@ -236,9 +247,8 @@ fn of_board(
     let top_language = top_language(board, language);
     let has_vhdl_top = top_language == Language::Vhdl;
     let top = format!("{name}_top{}", top_language.extension());
-    let t_format: Vec<usize> = project.card.t_format_numbers().collect();
     let ports: Vec<Value> = (project.pins.iter())
-        .map(|pin| Value::from(Serde(Port::new(pin, project, board, &t_format))))
+        .map(|pin| Value::from(Serde(Port::new(pin, project, board))))
         .collect();
     let inverted = inverted(project, board);
     let facts = context! {
@@ -275,7 +285,7 @@ fn of_board(
         },
         channels => project.card.channels.len(),
         protocols => project.protocols(),
-        t_format,
+        others => others(project),
         timing => explain::report(project).to_string(),
         constraints => family.constraints.as_str(),
         constraints_have => family.constraints_have.as_str(),

@@ -2,39 +2,18 @@
 
 use crate::board::Pll;
 use crate::config::{phase_name, Project};
+use crate::other_protocol::OtherReport;
+use crate::protocols::other;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::{read_bytes, CardConfig, ChannelConfig};
-use endat_hdl::endat::timing::deviation_ppm;
+use rate::us_of;
+pub use rate::Rate;
 use serde::Serialize;
 use stream::StreamReport;
-use t_format::TFormatReport;
 
+pub(crate) mod rate;
 mod stream;
-mod t_format;
 mod text;
-
-/// A rate that was asked for and the one the card makes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Rate {
-    /// Asked for, in hertz.
-    pub requested_hz: u64,
-    /// Made, in hertz.
-    pub actual_hz: f64,
-    /// Deviation, in parts per million.
-    pub deviation_ppm: f64,
-}
-
-impl Rate {
-    fn new(requested_hz: u64, actual_hz: f64) -> Self {
-        // A deviation below a thousandth of a ppm is the rounding of this very division.
-        let deviation_ppm = (deviation_ppm(actual_hz, requested_hz as f64) * 1e3).round() / 1e3;
-        Self {
-            requested_hz,
-            actual_hz,
-            deviation_ppm: deviation_ppm + 0.0,
-        }
-    }
-}
 
 /// One channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -89,14 +68,14 @@ pub struct ChannelReport {
     pub start_timeout_us: u64,
 }
 
-/// A channel of either protocol.
+/// A channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum AnyChannelReport {
     /// EnDat.
     Endat(Box<ChannelReport>),
-    /// T-format.
-    TFormat(TFormatReport),
+    /// Another protocol.
+    Other(OtherReport),
 }
 
 /// The host link.
@@ -165,7 +144,7 @@ impl Report {
         let channels = self.channels.iter().enumerate();
         channels.filter_map(|(n, channel)| match channel {
             AnyChannelReport::Endat(channel) => Some((n, channel.as_ref())),
-            AnyChannelReport::TFormat(_) => None,
+            AnyChannelReport::Other(_) => None,
         })
     }
 }
@@ -181,7 +160,7 @@ fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelR
     let longest = || us_of(config.longest_frame_cycles(system_hz), system_hz);
     let us = |cycles: u64| us_of(cycles, system_hz);
     let time = config.frame_time(system_hz);
-    let request = &config.request;
+    let request = &config.spec;
     let frame_us = us(time.frame_cycles);
     let cycle_min_us = frame_us + request.recovery_min_ns as f64 / 1e3;
     let cycle_max_us = frame_us + request.recovery_max_ns as f64 / 1e3;
@@ -213,17 +192,13 @@ fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelR
     }
 }
 
-fn us_of(cycles: u64, system_hz: u64) -> f64 {
-    cycles as f64 * 1e6 / system_hz as f64
-}
-
 /// What each channel of a card with own triggers takes.
 fn own_triggers(card: &CardConfig) -> Vec<String> {
     if !card.own_triggers() {
         return vec![];
     }
     let own = card.channels.iter().map(|c| {
-        let own = c.request.trigger.unwrap_or_default();
+        let own = c.spec.trigger.unwrap_or_default();
         let sources = present(&[
             (own.sources.pin, "pin"),
             (own.sources.timer, "timer"),
@@ -245,9 +220,10 @@ pub fn report(project: &Project) -> Report {
     let channels = card
         .channels
         .iter()
+        .enumerate()
         .zip(&project.encoders)
-        .map(|(c, encoder)| match &c.t_format {
-            Some(t) => AnyChannelReport::TFormat(TFormatReport::new(card, c, t, encoder)),
+        .map(|((n, c), encoder)| match other(c.protocol()) {
+            Some(other) => AnyChannelReport::Other(other.report(card, n, encoder)),
             None => AnyChannelReport::Endat(channel(card, c, encoder).into()),
         })
         .collect();

@@ -15,6 +15,7 @@ use crate::testbench::RESET_CYCLES;
 use crate::zynq;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
+use endat_regs::Protocol;
 use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
@@ -167,7 +168,7 @@ pub struct Core<'a> {
     /// The same, and how many channels it has.
     pub description: String,
     /// Whose interface it is compatible with.
-    pub standard: &'static str,
+    pub standard: String,
     /// What a design calls it.
     pub submodule: &'static str,
     /// System clocks that it takes, in hertz.
@@ -206,6 +207,8 @@ impl<'a> Core<'a> {
         };
         let channels = project.card.channels.len();
         let title = format!("{} acquisition card", project.protocols());
+        let spoken = Protocol::ALL.iter().filter(|p| project.card.speaks(**p));
+        let standards: Vec<&str> = spoken.map(|p| p.row().means).collect();
         Ok(Self {
             name: &project.name,
             hash: &project.hash,
@@ -214,11 +217,7 @@ impl<'a> Core<'a> {
                 if channels == 1 { "" } else { "s" }
             ),
             title,
-            standard: match project.card.t_format_numbers().count() {
-                0 => "EnDat 2.1/2.2",
-                n if n == channels => "T-format",
-                _ => "EnDat 2.1/2.2 and T-format",
-            },
+            standard: standards.join(" and "),
             submodule: "endat",
             system_hz: vec![project.card.system_hz],
             input_hz: bitstream::input_hz(project),
@@ -244,7 +243,7 @@ impl<'a> Core<'a> {
             hash: &receiver.hash,
             title: title.into(),
             description: title.into(),
-            standard: "T-format",
+            standard: Protocol::TFormat.row().means.into(),
             submodule: "receiver",
             system_hz: SYSTEM_HZ.to_vec(),
             input_hz: SYSTEM_HZ.into_iter().max().unwrap_or_default(),
@@ -347,7 +346,7 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
         hash => core.hash,
         title => core.title.as_str(),
         description => core.description.as_str(),
-        standard => core.standard,
+        standard => core.standard.as_str(),
         submodule => core.submodule,
         system_hz => core.system_hz.clone(),
         sources => Value::from(Serde(core.sources)),

@@ -4,10 +4,11 @@
 use crate::board::BOARD_KEYS;
 use crate::config::base;
 use crate::config::keys::*;
-use crate::config::words::{RECEIVER_BUS, T_FORMAT};
+use crate::config::words::RECEIVER_BUS;
 use crate::form::key::{Key, Kind, Usual, ANY_NAME};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CHANNELS as COUNTS;
+use endat_regs::Protocol;
 use serde_json::{json, Map, Value};
 
 /// What every schema begins with.
@@ -217,13 +218,15 @@ fn bus_is(buses: &[&str]) -> Value {
 /// What a card's tables have to do with each other.
 fn card_rules() -> Value {
     let speaks = |word: &str| json!({"properties": {PROTOCOL.name: {"const": word}}, "required": [PROTOCOL.name]});
-    let channel = json!({
-        "if": speaks(T_FORMAT), "then": channel_of(T_FORMAT_FORM), "else": channel_of(ENDAT_FORM),
+    let others = || Protocol::ALL.iter().filter(|p| **p != Protocol::Endat);
+    let channel = others().fold(channel_of(ENDAT_FORM), |otherwise, p| {
+        json!({"if": speaks(p.row().word), "then": channel_of(form(*p)), "else": otherwise})
     });
     let has_clock = json!({"required": [CLOCK_HZ.name]});
     let common = json!({"properties": {COMMON: has_clock}, "required": [COMMON]});
-    let each =
-        json!({"properties": {CHANNELS: {"items": {"anyOf": [speaks(T_FORMAT), has_clock]}}}});
+    let mut either: Vec<Value> = others().map(|p| speaks(p.row().word)).collect();
+    either.push(has_clock);
+    let each = json!({"properties": {CHANNELS: {"items": {"anyOf": either}}}});
     let others: Vec<&str> = (HostBus::ALL.iter())
         .filter(|bus| **bus != HostBus::Uart)
         .map(|bus| bus.name())
@@ -259,7 +262,7 @@ fn receiver_rules() -> Value {
         .iter()
         .filter(|k| k.tables.contains(&"host") && k.forms & RECEIVER_FORM == 0);
     let mut channel = channel_of(RECEIVER_FORM);
-    channel["properties"][PROTOCOL.name] = json!({"const": T_FORMAT});
+    channel["properties"][PROTOCOL.name] = json!({"const": Protocol::TFormat.row().word});
     channel["required"] = json!([PROTOCOL.name]);
     let mut properties = none_of(foreign);
     properties["host"] = json!({"properties": none_of(host.map(|k| k.name))});

@@ -27,6 +27,8 @@ pub mod json_schema;
 pub mod language;
 pub mod maps;
 pub(crate) mod number;
+pub(crate) mod other_protocol;
+pub(crate) mod protocols;
 pub mod prove;
 pub mod readers;
 pub mod recording;

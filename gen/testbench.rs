@@ -1,14 +1,16 @@
 //! The Verilog test bench that is emitted with a card: everything in it follows from the configuration and the register table.
-//! Every channel has an encoder there, EnDat or T-format (`t_format`): models of their own, which share no code with the core.
+//! Every channel has an encoder of its protocol there: models of their own, which share no code with the core.
 //! Of an initialisation it looks at the beginning only: the whole of it is longer than anybody simulates in Verilog.
 
 mod host;
 mod purpose;
-pub(crate) mod t_format;
+pub(crate) mod text;
 
 use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
+use crate::other_protocol::BenchParts;
+use crate::protocols::OTHERS;
 use crate::template;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::{service_times, services};
@@ -19,40 +21,22 @@ use endat_hdl::endat::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::{INFO_BITS, SUPPLEMENT_PULSES};
 use endat_hdl::regs::{
-    start, Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, LINE, RESULT,
+    start, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, LINE, RESULT,
     SERVICE,
 };
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;
+use text::{clock_ns, fields, real, whole, word_address, words, MARGIN_NS};
 
-/// Added to every wait, in ns: time for the last steps inside the card, and for lights to be looked at.
-const MARGIN_NS: u64 = 3_000;
 /// After a clock that stopped, the bench's encoder waits this long before it takes the frame for ended, in ns.
 const ENCODER_GIVES_UP_NS: u64 = 15_000;
-/// After a T-format reply that came late or not whole, the line is idle at the latest after this, in ns.
-pub(crate) const T_FORMAT_IDLE_NS: u64 = 25_000;
 /// Delay that the bench's encoder adds between a clock edge and its data, in ns.
 const LAUNCH_NS: u64 = 12;
 /// The trigger pin's way through synchroniser, edge detection and transaction, and one cycle for its phase.
 const TRIGGER_CYCLES_MAX: u64 = 10;
 /// Cycles that synchroniser and edge detection add to the measured line delay (the filter's come on top).
 const INPUT_CYCLES: u64 = 3;
-
-/// A word of the register map.
-#[derive(Serialize)]
-struct Word {
-    name: String,
-    address: String,
-}
-
-/// Some bits of a word.
-#[derive(Serialize)]
-struct Bits {
-    name: String,
-    lsb: u32,
-    width: u32,
-}
 
 /// A channel and the encoder on it.
 #[derive(Serialize)]
@@ -70,27 +54,9 @@ struct Port {
     run_late: u64,
 }
 
-/// A literal of type `real`.
-pub(crate) fn real(ns: f64) -> String {
-    let text = format!("{ns:.3}");
-    let plain = text.trim_end_matches('0');
-    let zero = if plain.ends_with('.') { "0" } else { "" };
-    format!("{plain}{zero}")
-}
-
-pub(crate) fn whole(ns: u64) -> String {
-    real(ns as f64)
-}
-
-/// Period of the bench's clock, in ns: two halves of whole picoseconds, which are the steps of the simulator. A period that is none
-/// would be told wrong to everything that counts cycles by it.
-pub(crate) fn clock_ns(hz: u64) -> f64 {
-    2.0 * (5e11 / hz as f64).round() / 1e3
-}
-
 impl Port {
     fn new(card: &CardConfig, index: usize, channel: &ChannelConfig) -> Self {
-        let request = &channel.request;
+        let request = &channel.spec;
         let (low, high) = (request.recovery_min_ns, request.recovery_max_ns);
         let tm_ns = low + (high - low) / 4;
         // Every channel has another cable, the last one the longest that is allowed for.
@@ -114,29 +80,6 @@ impl Port {
             run_late: delay_cycles / channel.period_cycles + 2,
         }
     }
-}
-
-fn words(block: &Block) -> impl Iterator<Item = Word> + '_ {
-    block.registers.iter().map(|register| Word {
-        name: format!("{}_{}", block.name, register.name).to_uppercase(),
-        address: format!("{:03X}", block.address(register, 0)),
-    })
-}
-
-fn fields(block: &Block) -> impl Iterator<Item = Bits> + '_ {
-    block.registers.iter().flat_map(|register| {
-        register.fields.iter().map(|field| Bits {
-            name: format!("{}_{}", register.name, field.name).to_uppercase(),
-            lsb: field.lsb,
-            width: field.width,
-        })
-    })
-}
-
-/// Where a word of a channel's block stands.
-fn word_address(block: &Block, name: &str, channel: usize) -> String {
-    let register = block.register(name).expect("a word of the block");
-    format!("{:03X}", block.address(register, channel))
 }
 
 /// The longest of a time over all EnDat channels, in cycles, as ns.
@@ -179,7 +122,7 @@ pub(crate) fn tell(name: &str, before: &str, values: &str) -> Result<String, Gen
 }
 
 /// What the bench of a card that initialises its encoders does first.
-fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String, GenError> {
+fn power_up(card: &CardConfig, ports: &[Port], has_others: bool) -> Result<String, GenError> {
     if !card.service.initialise {
         return Ok(String::new());
     }
@@ -192,7 +135,7 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
         include_str!("templates/power_up.v.jinja"),
         &context! {
             channels => Serde(ports),
-            t_format,
+            has_others,
             // A delay that is known from the start is not measured at a slow clock.
             is_measured => card.line.phase != PhaseSource::Fixed,
             services => services(card),
@@ -235,17 +178,22 @@ fn cycle_ns(card: &CardConfig) -> u64 {
     };
     let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz) + more(c), hz);
     let exchange_ns = card.channels.iter().map(exchange).max().unwrap_or(0);
-    // A T-format line has to be idle for a while after an exchange without a reply.
-    let idle_ns = match card.t_format_numbers().next() {
-        Some(_) => T_FORMAT_IDLE_NS,
-        None => 0,
-    };
-    exchange_ns + MARGIN_NS + idle_ns
+    let there = OTHERS.iter().filter(|o| card.speaks(o.protocol()));
+    let idle_ns = there.map(|other| other.idle_ns()).max();
+    exchange_ns + MARGIN_NS + idle_ns.unwrap_or(0)
 }
 
 /// Whether a field of the word `frame` says which triggers a channel takes.
 fn is_own_trigger(field: &str) -> bool {
     field == "skip" || field.starts_with("ignore_")
+}
+
+/// The bits of the position that results of each channel bring.
+fn masks(ports: &[Port], others: &[BenchParts]) -> Vec<Value> {
+    let of_endat = ports.iter().map(|p| (p.index, p.mask.clone()));
+    let of_others = others.iter().flat_map(|parts| parts.masks.clone());
+    let all = of_endat.chain(of_others);
+    all.map(|(index, mask)| context! { index, mask }).collect()
 }
 
 /// The test bench of a card; none for a port without a bus.
@@ -255,9 +203,10 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         return Ok(None);
     };
     let hz = card.system_hz;
-    let t_format: Vec<usize> = card.t_format_numbers().collect();
     let sleeps = card.service.initialise || !card.initial_values;
-    let parts = t_format::Parts::new(&project.name, card, sleeps)?;
+    let there = OTHERS.iter().filter(|o| card.speaks(o.protocol()));
+    let others = there.map(|other| other.bench(&project.name, card, sleeps));
+    let others: Vec<BenchParts> = others.collect::<Result<_, _>>()?;
     let cycle_ns = cycle_ns(card);
     let after_frame = |c: &ChannelConfig| c.cycle_max_cycles(hz) - c.frame_time(hz).frame_cycles;
     let calibration_ns =
@@ -281,11 +230,8 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         c.recovery_limit_cycles + cycles_at_least(1_000 * c.start_timeout_us, hz)
     };
     let frames = card.endat_channels().map(|(_, c)| c.frame_time(hz));
-    let replies = card.channels.iter().filter_map(|c| {
-        let t_format = c.t_format.as_ref()?;
-        Some(c.period_cycles * t_format.request.wire_bits())
-    });
-    let shortest_frame = frames.map(|f| f.frame_cycles).chain(replies).min();
+    let exchanges = others.iter().map(|parts| parts.shortest_cycles);
+    let shortest_frame = frames.map(|f| f.frame_cycles).chain(exchanges).min();
     let abort_us = card.endat_channels().map(|(_, c)| c.abort_us).max();
     let ports = card.endat_channels();
     let ports: Vec<Port> = ports.map(|(i, c)| Port::new(card, i, c)).collect();
@@ -294,7 +240,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         include_str!("templates/encoder.v.jinja"),
         &context! { name => project.name.as_str() },
     )?;
-    let power_up = power_up(card, &ports, !t_format.is_empty())?;
+    let power_up = power_up(card, &ports, !others.is_empty())?;
     let purpose = purpose::Parts::new(card, &ports)?;
     let blocks = [&CARD, &CARD_CONFIG, &RESULT];
     let blocks = blocks
@@ -324,13 +270,11 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         first => ports.first().map_or(0, |p| p.index),
         last => ports.last().map_or(0, |p| p.index),
         count => card.channels.len(),
-        brings => if t_format.is_empty() { "ENDAT" } else { "BRINGS" },
-        t_format,
-        t_format_encoder => parts.encoder,
-        t_format_ports => parts.ports,
-        t_format_steps => parts.steps,
-        silent => parts.silent,
-        masks => ports.iter().map(|p| (p.index, p.mask.clone())).chain(parts.masks).map(|(index, mask)| context! { index, mask }).collect::<Vec<_>>(),
+        brings => if others.is_empty() { "ENDAT" } else { "BRINGS" },
+        others => Serde(&others),
+        endat => ports.iter().map(|p| p.index).collect::<Vec<_>>(),
+        silent => others.iter().flat_map(|parts| parts.silent.clone()).collect::<Vec<_>>(),
+        masks => masks(&ports, &others),
         channels => Serde(ports),
         host => host.text,
         connections => Serde(host.connections),

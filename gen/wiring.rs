@@ -6,24 +6,26 @@ use endat_sim::diagram::{wiring_svg, WiredChannel, WiredPort};
 
 /// The drawing of a card's pins, as SVG.
 pub fn drawing(project: &Project, board: &Board) -> String {
-    let t_format: Vec<usize> = project.card.t_format_numbers().collect();
+    let protocols = project.card.protocols();
+    let has_clock = |n: usize| protocols.of(n).row().has_clock;
     let port = |pin: &Assignment| WiredPort {
         signal: pin.signal.clone(),
         place: pin.place(),
-        meaning: pin.meaning(&t_format),
+        meaning: pin.meaning(protocols),
     };
     let named = |name: String| project.pins.iter().find(|pin| pin.signal == name).map(port);
     let channels = (0..project.card.channels.len()).filter_map(|n| {
         Some(WiredChannel {
             number: n,
-            clock: named(format!("endat_clk{n}_o")).filter(|_| !t_format.contains(&n)),
+            clock: named(format!("endat_clk{n}_o")).filter(|_| has_clock(n)),
             data: named(format!("endat_data{n}_o"))?,
             enable: named(format!("endat_data{n}_oe"))?,
             answer: named(format!("endat_data{n}_i"))?,
         })
     });
     // A clock that a channel does not have stays open.
-    let open: Vec<String> = t_format.iter().map(|n| format!("endat_clk{n}_o")).collect();
+    let open = (0..project.card.channels.len()).filter(|n| !has_clock(*n));
+    let open: Vec<String> = open.map(|n| format!("endat_clk{n}_o")).collect();
     let others = project.pins.iter().filter(|pin| {
         open.contains(&pin.signal) || !matches!(pin.kind, Kind::Transceiver | Kind::EncoderData)
     });

@@ -19,6 +19,7 @@ use crate::endat::transaction::cause;
 use crate::ports::*;
 use crate::several::each;
 use crate::t_format::port::TFormatPort;
+use endat_regs::Protocol;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
@@ -162,9 +163,16 @@ impl EncoderPort {
         )
     }
 
-    /// A port for a T-format encoder. `has_io`: beside it is a service, of which it has nothing.
-    pub fn t_format(has_io: bool) -> Self {
-        Self::of(vec![], vec![TFormatPort::default()], vec![], vec![], has_io)
+    /// A port for an encoder that speaks another protocol than EnDat. `has_io`: beside it is a service, of which it has nothing.
+    ///
+    /// # Panics
+    /// For EnDat, whose ports have settings of their own.
+    pub fn speaking(protocol: Protocol, has_io: bool) -> Self {
+        let t_format = match protocol {
+            Protocol::TFormat => vec![TFormatPort::default()],
+            Protocol::Endat => panic!("EncoderPort::served makes ports for EnDat"),
+        };
+        Self::of(vec![], t_format, vec![], vec![], has_io)
     }
 
     fn of(
@@ -245,25 +253,7 @@ impl Logic for EncoderPort {
                 self.settings.start_timeout_us.val().get_bits::<6>(0);
             self.t_format[i].host_address.next = self.window.host_address.val().get_bits::<3>(0);
             connect!(self.t_format[i] <= self.window; host_read, host_write, host_half, host_data);
-            self.line.endat_clk.next = true;
-            self.recovery_cycles.next = 0.into();
-            self.delay_cycles.next = 0.into();
-            self.request_runs.next = false;
-            self.line_high.next = false;
-            self.displaced.next = false;
-            self.end.over_cause.next = 0.into();
-            self.end.over_flags.next = 0.into();
-            self.reply.next = 0.into();
-            self.end.answer.next = 0.into();
-            self.end.reply_good.next = false;
-            self.record.info_active.next = 0.into();
-            self.record.info_1.next = 0.into();
-            self.record.info_2.next = 0.into();
-            self.record.info_came.next = 0.into();
-            self.record.info_good.next = 0.into();
-            self.record.info_crcs.next = 0.into();
-            self.calibrated.next = false;
-            self.sample_strobe.next = false;
+            self.be_without_endat();
             FrameResultOut::link(&mut self.result, &mut self.t_format[i].result);
             connect!(self.line <= self.t_format[i]; data_o, data_oe);
             connect!(self.end <= self.t_format[i]; over, over_request);
@@ -341,5 +331,28 @@ impl Logic for EncoderPort {
                 self.window.host_word.next = self.monitor[i].host_word.val();
             }
         }
+    }
+
+    /// What only an EnDat encoder has is at rest.
+    fn be_without_endat(&mut self) {
+        self.line.endat_clk.next = true;
+        self.recovery_cycles.next = 0.into();
+        self.delay_cycles.next = 0.into();
+        self.request_runs.next = false;
+        self.line_high.next = false;
+        self.displaced.next = false;
+        self.end.over_cause.next = 0.into();
+        self.end.over_flags.next = 0.into();
+        self.reply.next = 0.into();
+        self.end.answer.next = 0.into();
+        self.end.reply_good.next = false;
+        self.record.info_active.next = 0.into();
+        self.record.info_1.next = 0.into();
+        self.record.info_2.next = 0.into();
+        self.record.info_came.next = 0.into();
+        self.record.info_good.next = 0.into();
+        self.record.info_crcs.next = 0.into();
+        self.calibrated.next = false;
+        self.sample_strobe.next = false;
     }
 }

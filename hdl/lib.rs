@@ -5,7 +5,7 @@
 //!                                                                      +-> t_format: TFormatPort                   <-> line
 //! ```
 //!
-//! A protocol is a folder: [`endat`], [`t_format`]. What both of them have is here: [`ports`] (what travels together), [`input_filter`],
+//! A protocol is a folder: [`endat`], [`t_format`]; [`protocols`] lists them. What all of them have is here: [`ports`] (what travels together), [`input_filter`],
 //! [`snapshot`]. [`encoder_port`] is one encoder of either, [`card`] all of them with their host, [`config`] what is asked for, in cycles.
 //! [`rtl_design`] has the registers, and turns any block into a typed `Design`.
 
@@ -17,6 +17,7 @@ pub mod half_period;
 pub mod input_filter;
 pub mod ports;
 pub use endat_regs::protocol;
+pub mod protocols;
 pub mod regs;
 mod several;
 pub mod snapshot;

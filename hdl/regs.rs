@@ -9,6 +9,9 @@ use protocol::MAX_POSITION_BITS;
 
 /// Whether a card of this configuration has a part.
 pub fn has(config: &CardConfig, part: Part) -> bool {
+    if let Some(protocol) = Protocol::ALL.iter().find(|p| p.row().part == Some(part)) {
+        return config.speaks(*protocol);
+    }
     match part {
         Part::EnDat22 | Part::LineDelay => config.endat_channels().next().is_some(),
         Part::TriggerPin | Part::TriggerTimer => true,
@@ -22,12 +25,12 @@ pub fn has(config: &CardConfig, part: Part) -> bool {
         Part::Stream => config.stream.fifo_bytes != 0,
         Part::Direct => config.outputs.any(),
         Part::Interrupt => config.outputs.interrupt,
-        Part::TFormat => config.t_format_channels() != 0,
         Part::RecoveryCounter => config.safety.recovery_counter,
         Part::SecondInterface => config.safety.second_interface,
         Part::SecondReceiver => config.safety.second_receiver,
         Part::ErrorTest => config.safety.error_test_ms != 0,
         Part::OwnTrigger => config.own_triggers(),
+        Part::TFormat => unreachable!("the part of a protocol"),
     }
 }
 
@@ -93,7 +96,7 @@ fn of(config: &CardConfig, channel: usize, value: impl Fn(&ChannelConfig) -> u64
 
 /// The triggers that a channel takes.
 fn own(channel: &ChannelConfig) -> OwnTrigger {
-    channel.request.trigger.unwrap_or_default()
+    channel.spec.trigger.unwrap_or_default()
 }
 
 fn line(config: &CardConfig) -> LineStart {
@@ -121,7 +124,6 @@ const STARTS: &[(&str, Start)] = &[
     }),
     ("card.system_hz.value", |s, _| s.system_hz),
     ("card.configuration_hash.value", |s, _| s.hash >> 16),
-    ("card.protocols.t_format", |s, _| s.t_format_channels()),
     ("card.protocols.stream_additional_data", |s, _| {
         s.stream.additional_data.into()
     }),
@@ -147,7 +149,7 @@ const STARTS: &[(&str, Start)] = &[
         s.sources.register.into()
     }),
     ("card_config.trigger_sources.disabled", |s, _| {
-        let off = |c: &ChannelConfig| c.request.trigger.is_some_and(|t| !t.enabled);
+        let off = |c: &ChannelConfig| c.spec.trigger.is_some_and(|t| !t.enabled);
         let channels = s.channels.iter().enumerate();
         channels.map(|(n, c)| u64::from(off(c)) << n).sum()
     }),
@@ -168,9 +170,9 @@ const STARTS: &[(&str, Start)] = &[
         of(s, c, |v| own(v).ignored() >> 1 & 1)
     }),
     ("config.frame.command", |s, c| {
-        of(s, c, |v| match v.t_format {
-            Some(_) => 0,
-            None => v.command.code().into(),
+        of(s, c, |v| match v.protocol() {
+            Protocol::Endat => v.command.code().into(),
+            _ => 0,
         })
     }),
     ("config.frame.ignore_register", |s, c| {
@@ -188,17 +190,11 @@ const STARTS: &[(&str, Start)] = &[
     ("config.timing.filter_cycles", |s, c| {
         of(s, c, |v| v.filter_cycles)
     }),
-    ("config.timing.request_id", |s, c| {
-        of(s, c, |v| v.t_format.map_or(0, |t| t.request.id().into()))
-    }),
     ("config.limits.start_timeout_us", |s, c| {
         of(s, c, |v| v.start_timeout_us)
     }),
     ("config.limits.recovery_limit_cycles", |s, c| {
         of(s, c, |v| v.recovery_limit_cycles)
-    }),
-    ("config.limits.field_gap_us", |s, c| {
-        of(s, c, |v| v.t_format.map_or(0, |t| t.field_gap_us))
     }),
     ("line.alignment.mode", |s, _| line(s).phase_mode),
     ("line.alignment.majority", |s, _| line(s).majority.into()),
@@ -214,11 +210,33 @@ const STARTS: &[(&str, Start)] = &[
 pub fn start(block: &Block, register: &Register, config: &CardConfig, channel: usize) -> u32 {
     let value = |field: &Field| {
         let path = format!("{}.{}.{}", block.name, register.name, field.name);
-        let known = STARTS.iter().find(|(place, _)| *place == path);
-        known.map_or(0, |(_, start)| start(config, channel))
+        if let Some((_, start)) = STARTS.iter().find(|(place, _)| *place == path) {
+            return start(config, channel);
+        }
+        of_protocol(block, register, field, config, channel).unwrap_or(0)
     };
     let parts = register.fields.iter();
     parts.fold(0, |word, f| word | (value(f) << f.lsb) as u32 & f.mask())
+}
+
+/// The same of a field that only one protocol has, or that tells which channels speak it.
+fn of_protocol(
+    block: &Block,
+    register: &Register,
+    field: &Field,
+    config: &CardConfig,
+    channel: usize,
+) -> Option<u64> {
+    let spoken = || config.channels.get(channel).map(|c| c.spoken);
+    match block.name {
+        "config" => spoken()?.start(register.name, field.name),
+        "card" => {
+            let tells = |p: &&Protocol| p.row().channels == Some(field);
+            let protocol = Protocol::ALL.iter().find(tells)?;
+            Some(config.protocols().channels(*protocol))
+        }
+        _ => None,
+    }
 }
 
 /// The words of a configuration block after reset; `channel` is `None` for the card's own.

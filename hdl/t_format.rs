@@ -10,9 +10,11 @@
 //! and checks), [`reply_bytes`], [`verdict_bytes`], [`moments`] (words for a processor), [`dsp`]; [`port`] is the same encoder
 //! as a channel of a card, [`channel`] a receiver whose results are signals.
 
+pub mod asked;
 pub mod bit_grid;
 pub use endat_regs::causes::t_format as cause;
 pub mod channel;
+pub(crate) mod config;
 pub mod dsp;
 pub mod exchange;
 pub mod field_order;

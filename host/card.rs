@@ -7,14 +7,11 @@ use crate::result;
 use crate::transport::Transport;
 use crate::HostError;
 use endat_driver::Reading;
-use endat_regs::{result_words, Part, FEATURES_BITS, ID, VERSION};
+use endat_regs::{result_words, Part, Protocol, Protocols, FEATURES_BITS, ID, VERSION};
 use std::time::Duration;
 
 /// Words that say who a card is.
 pub(crate) const IDENTITY_WORDS: usize = 6;
-/// Blocks that only channels of one protocol have.
-const OF_ENDAT: [&str; 3] = ["service", "line", "recovery"];
-const OF_T_FORMAT: &str = "t_format";
 /// The field of a channel's clock period.
 const PERIOD: &str = "period_cycles";
 /// How long a request may take, unless told otherwise: milliseconds on a real card, many seconds on a simulated one.
@@ -35,8 +32,8 @@ pub struct Identity {
     pub system_hz: u32,
     /// Which configuration it was made from.
     pub configuration_hash: u32,
-    /// Channels that speak T-format: bit n for channel n.
-    pub t_format_channels: u32,
+    /// What each channel speaks.
+    pub protocols: Protocols,
     /// Sets of the stream have the additional data.
     pub stream_additional_data: bool,
 }
@@ -74,7 +71,7 @@ impl Identity {
             system_hz: words[3],
             configuration_hash: words[4],
             // 0 on cards with an older map: absent words read 0.
-            t_format_channels: words[5] & 0xFF,
+            protocols: Protocols::of_word(words[5]),
             stream_additional_data: words[5] >> 8 & 1 == 1,
         })
     }
@@ -91,14 +88,17 @@ impl Identity {
         self.features >> part as u32 & 1 == 1
     }
 
-    /// Whether a channel speaks T-format.
-    pub fn is_t_format(&self, channel: usize) -> bool {
-        self.t_format_channels >> channel & 1 == 1
+    /// What a channel speaks.
+    pub fn protocol(&self, channel: usize) -> Protocol {
+        self.protocols.of(channel)
     }
 
-    /// Whether a place is one of a channel that speaks T-format.
-    pub fn is_of_t_format(&self, place: &Place) -> bool {
-        place.block.per_channel && self.is_t_format(place.channel)
+    /// What the channel of a place speaks; EnDat if it is one of the card.
+    pub fn protocol_of(&self, place: &Place) -> Protocol {
+        match place.block.per_channel {
+            true => self.protocol(place.channel),
+            false => Protocol::Endat,
+        }
     }
 }
 
@@ -156,15 +156,11 @@ impl<T: Transport> Card<T> {
     pub fn place(&self, name: &str) -> Result<Place, HostError> {
         let lacks = |part: &Part| !self.identity.has(*part);
         let channels = 0..self.identity.channels;
-        let speaks = |t_format| {
-            channels
-                .clone()
-                .any(|n| self.identity.is_t_format(n) == t_format)
-        };
         let has = |block: &Block| {
             block.part.is_none_or(|part| !lacks(&part))
-                && (!OF_ENDAT.contains(&block.name) || speaks(false))
-                && (block.name != OF_T_FORMAT || speaks(true))
+                && channels
+                    .clone()
+                    .any(|n| self.identity.protocol(n).has(block))
         };
         let place = Place::named_among(name, self.identity.channels, has)?;
         let word = place
@@ -185,14 +181,12 @@ impl<T: Transport> Card<T> {
                 part.switch()
             )));
         }
-        let of_t_format = OF_ENDAT.contains(&place.block.name);
-        let of_endat = place.block.name == OF_T_FORMAT;
-        let is_t_format = self.identity.is_t_format(place.channel);
-        if is_t_format && of_t_format || !is_t_format && of_endat {
+        let protocol = self.identity.protocol(place.channel);
+        if !protocol.has(place.block) {
             return Err(HostError::Name(format!(
                 "register = {name:?}: channel {} speaks {}, which has no block {}; `endat-gen id` shows the channels",
                 place.channel,
-                if is_t_format { "T-format" } else { "EnDat" },
+                protocol.name(),
                 place.block.name
             )));
         }
@@ -209,7 +203,7 @@ impl<T: Transport> Card<T> {
         if place.register.access == Access::ReadOnly {
             return Ok(());
         }
-        let is_t_format = self.identity.is_of_t_format(place);
+        let protocol = self.identity.protocol_of(place);
         let fields = place.register.fields.iter();
         let meant = fields
             .clone()
@@ -226,9 +220,12 @@ impl<T: Transport> Card<T> {
                 Some(_) => value,
                 None => field.of(value),
             };
-            let takes = match field.refusal(number, is_t_format) {
+            let takes = match field.refusal(number, protocol) {
                 // The map's limit is that of cards with DATA on both edges.
-                None if field.name == PERIOD && !is_t_format && number < self.period_min() => {
+                None if field.name == PERIOD
+                    && protocol == Protocol::Endat
+                    && number < self.period_min() =>
+                {
                     Some(format!("{}..{}", self.period_min(), field.mask()))
                 }
                 takes => takes,
@@ -300,7 +297,7 @@ impl<T: Transport> Card<T> {
                 &words,
                 self.identity.channels,
                 has_infos,
-                self.identity.t_format_channels,
+                self.identity.protocols,
             ),
         })
     }
@@ -340,11 +337,13 @@ impl<T: Transport> Card<T> {
     }
 
     pub(crate) fn needs_endat(&self, what: &str, channel: usize) -> Result<(), HostError> {
-        if !self.identity.is_t_format(channel) {
+        let protocol = self.identity.protocol(channel);
+        if protocol == Protocol::Endat {
             return Ok(());
         }
+        let (name, word) = (protocol.name(), protocol.row().word);
         Err(HostError::Name(format!(
-            "channel {channel}: {what}: the channel speaks T-format, which has none; its requests go through t_format{channel}.send and .answer (`endat-gen explain t_format`)"
+            "channel {channel}: {what}: the channel speaks {name}, which has none; its requests go through the words of {word}{channel} (`endat-gen explain {word}`)"
         )))
     }
 

@@ -12,7 +12,7 @@ use crate::HostError;
 use clock::Clock;
 use endat_driver::AdditionalData as Info;
 use endat_driver::Reading;
-use endat_regs::Part;
+use endat_regs::{Part, Protocol};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -71,9 +71,9 @@ impl Cell {
         found.map_or(UNKNOWN_CODE, |(code, _)| code)
     }
 
-    /// What a set of the stream says of a channel that speaks one protocol or the other.
-    fn of(sample: &Sample, is_t_format: bool) -> Self {
-        let named = sample.cause_name(is_t_format);
+    /// What a set of the stream says of a channel that speaks this protocol.
+    fn of(sample: &Sample, protocol: Protocol) -> Self {
+        let named = sample.cause_name(protocol);
         let cause = match (sample.taken, sample.missing) {
             // What went wrong is told, however late.
             _ if sample.is_late() && !sample.fresh && sample.cause != 0 => named,
@@ -222,7 +222,7 @@ impl Feed {
             true => Cell {
                 position: sample.valid.then_some(sample.position),
                 fresh: sample.fresh,
-                cause: sample.cause_name(false),
+                cause: sample.cause_name(Protocol::Endat),
                 infos: [None; 2],
             },
             false => Cell {
@@ -314,7 +314,7 @@ impl Feed {
                 }
                 let identity = card.identity();
                 let samples = set.channels.iter().enumerate();
-                let cells = samples.map(|(n, s)| Cell::of(s, identity.is_t_format(n)));
+                let cells = samples.map(|(n, s)| Cell::of(s, identity.protocol(n)));
                 let cells = cells.collect();
                 rows.push_back(self.row(set.sequence, set.timestamp, cells));
             }
@@ -354,7 +354,7 @@ mod tests {
         };
         let crc = causes::number("crc").expect("a cause");
         for (sample, cause) in [(sample(true, 0), LATE), (sample(false, crc), "crc")] {
-            let cell = Cell::of(&sample, false);
+            let cell = Cell::of(&sample, Protocol::Endat);
             assert_eq!((cell.cause, cell.fresh), (cause, false), "{sample:?}");
         }
     }

@@ -23,6 +23,7 @@ pub mod motion;
 pub mod name_plate;
 pub mod owner;
 pub mod panda;
+pub mod protocols;
 pub mod ready;
 pub mod registers;
 pub mod result;

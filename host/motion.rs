@@ -15,7 +15,7 @@ pub fn range(scale: &Scale, plate: Option<&NamePlate>) -> Option<u64> {
             let turns = plate.and_then(|p| p.revolutions).unwrap_or(1).max(1);
             steps_per_turn.checked_mul(turns.into())
         }
-        Scale::Linear { .. } | Scale::TFormat => None,
+        Scale::Linear { .. } | Scale::Counts { .. } => None,
     }
 }
 

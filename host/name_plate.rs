@@ -2,11 +2,21 @@
 
 use crate::registers::Place;
 use crate::units::Scale;
+use endat_regs::Protocol;
+
+/// What an encoder tells of itself that has no name plate.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Told {
+    /// Lines of a heading and what belongs to it.
+    pub lines: Vec<(&'static str, String)>,
+    /// The same as numbers.
+    pub fields: Vec<(&'static str, u32)>,
+}
 
 /// What a step of the initialisation does.
 pub fn step_name(step: u16) -> String {
     let field = Place::field_at("service", "progress", "step", 0).field;
-    let told = field.and_then(|f| f.told(step.into(), false));
+    let told = field.and_then(|f| f.told(step.into(), Protocol::Endat));
     told.unwrap_or_else(|| "unknown".to_owned())
 }
 

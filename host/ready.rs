@@ -6,7 +6,7 @@ use crate::name_plate::NamePlate;
 use crate::transport::Transport;
 use crate::units::Scale;
 use crate::HostError;
-use endat_regs::Part;
+use endat_regs::{Part, Protocol};
 use std::time::{Duration, Instant};
 
 /// An initialisation that takes longer is worth a word.
@@ -17,8 +17,8 @@ const FIRST_RESULTS: Duration = Duration::from_secs(1);
 impl<T: Transport> Card<T> {
     /// What a measuring step of a channel is: as the encoder says, else as if the position were one turn.
     pub fn scale(&mut self, channel: usize) -> Result<Scale, HostError> {
-        if self.identity().is_t_format(channel) {
-            return Ok(Scale::TFormat);
+        if let Some(scale) = Scale::of(self.identity().protocol(channel)) {
+            return Ok(scale);
         }
         if self.identity().has(Part::Initialise) {
             if let Some(scale) = self.name_plate(channel)?.scale() {
@@ -38,7 +38,8 @@ impl<T: Transport> Card<T> {
     /// Name plates; none of a channel whose encoder the card does not read.
     pub fn name_plates(&mut self) -> Result<Vec<Option<NamePlate>>, HostError> {
         let identity = *self.identity();
-        let has = |n: usize| identity.has(Part::Initialise) && !identity.is_t_format(n);
+        let has =
+            |n: usize| identity.has(Part::Initialise) && identity.protocol(n) == Protocol::Endat;
         let channels = 0..identity.channels;
         channels
             .map(|n| has(n).then(|| self.name_plate(n)).transpose())
@@ -49,7 +50,8 @@ impl<T: Transport> Card<T> {
     fn endat_channels(&self) -> Vec<usize> {
         let identity = self.identity();
         let all = 0..identity.channels;
-        all.filter(|n| !identity.is_t_format(*n)).collect()
+        all.filter(|n| identity.protocol(*n) == Protocol::Endat)
+            .collect()
     }
 
     /// Waits until no encoder is being initialised, or [`INITIALISATION`]; calls `is_long` once if it takes long. Whether one was.

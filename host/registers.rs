@@ -4,7 +4,7 @@ use crate::did_you_mean::closest;
 use crate::HostError;
 use std::fmt;
 
-pub use endat_regs::{Access, Block, Field, Limits, Named, Register, Values, BLOCKS};
+pub use endat_regs::{Access, Block, Field, Named, Register, Values, BLOCKS};
 
 /// A word of a card, and perhaps one of its fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,6 +244,7 @@ impl fmt::Display for Place {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use endat_regs::Protocol;
 
     #[test]
     fn every_name_leads_to_its_place() {
@@ -315,22 +316,32 @@ mod tests {
 
     #[test]
     fn what_the_map_forbids_is_refused() {
-        let of = |block, register, field, value, is_t_format| {
+        let of = |block, register, field, value, protocol| {
             let place = Place::field_at(block, register, field, 0);
-            place.field.unwrap().refusal(value, is_t_format)
+            place.field.unwrap().refusal(value, protocol)
         };
-        let frame = |field, value, is_t_format| of("config", "frame", field, value, is_t_format);
-        assert_eq!(frame("position_bits", 49, false).unwrap(), "1..48");
-        assert_eq!(frame("position_bits", 48, false), None);
-        assert_eq!(frame("position_bits", 49, true), None, "no meaning there");
-        assert_eq!(frame("period_cycles", 128, true).unwrap(), "8..127");
-        assert!(frame("command", 5, false)
+        let frame = |field, value, protocol| of("config", "frame", field, value, protocol);
+        assert_eq!(
+            frame("position_bits", 49, Protocol::Endat).unwrap(),
+            "1..48"
+        );
+        assert_eq!(frame("position_bits", 48, Protocol::Endat), None);
+        assert_eq!(
+            frame("position_bits", 49, Protocol::TFormat),
+            None,
+            "no meaning there"
+        );
+        assert_eq!(
+            frame("period_cycles", 128, Protocol::TFormat).unwrap(),
+            "8..127"
+        );
+        assert!(frame("command", 5, Protocol::Endat)
             .unwrap()
             .contains("send_position"));
-        assert_eq!(frame("command", 0, true), None);
-        let id = of("config", "timing", "request_id", 6, true);
+        assert_eq!(frame("command", 0, Protocol::TFormat), None);
+        let id = of("config", "timing", "request_id", 6, Protocol::TFormat);
         assert_eq!(id.unwrap(), "0..5, 7..12, 14..15");
-        let period = of("card_config", "trigger_period", "value", 3, false);
+        let period = of("card_config", "trigger_period", "value", 3, Protocol::Endat);
         assert_eq!(period.unwrap(), "4..16777215");
     }
 
@@ -343,7 +354,7 @@ mod tests {
         assert_eq!(field.put(0, 64), None);
         assert_eq!(field.of(0x0700_0000), 7);
         assert_eq!(
-            field.told(0x0700_0000, false).unwrap(),
+            field.told(0x0700_0000, Protocol::Endat).unwrap(),
             "000111 send position (EnDat 2.1)"
         );
     }

@@ -1,21 +1,23 @@
 //! The results of all channels, out of the burst that reads them.
 
 use endat_driver::{readings, Reading};
+use endat_regs::Protocols;
 
 /// The results of all channels, out of the burst that reads them ([`endat_regs::result_words`]).
 pub fn of_burst(
     words: &[u32],
     channels: usize,
     has_infos: bool,
-    t_format_channels: u32,
+    protocols: Protocols,
 ) -> Vec<Reading> {
-    let all = readings(words, has_infos, t_format_channels);
+    let all = readings(words, has_infos, protocols);
     all.take(channels).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use endat_driver::{AdditionalData as Info, Reading, RESULT_WORDS as WORDS};
+    use endat_regs::Protocol;
 
     /// The bytes of the page are those of a card: what stands beside the high bits of the position is not left out.
     #[test]
@@ -39,7 +41,7 @@ mod tests {
             {
                 *to = word(line.unwrap());
             }
-            let reading = Reading::new(&words, false);
+            let reading = Reading::new(&words, Protocol::Endat);
             assert!(words[2] >> 24 == 29 && reading.fits, "{words:x?}");
             assert_eq!(reading.position, 0x0123_5678);
             count += 1;
@@ -61,7 +63,7 @@ mod tests {
             0x0324_1234,
             0x0100_0000,
         ];
-        let reading = Reading::new(&words, false);
+        let reading = Reading::new(&words, Protocol::Endat);
         assert_eq!(
             reading,
             Reading {
@@ -98,12 +100,13 @@ mod tests {
         assert_eq!(reading.checked(), reading);
         // The same words of a channel with another protocol.
         let status = 0x00C2_0002;
-        let named = |is_t_format| Reading::new(&[status], is_t_format).cause_name();
-        assert_eq!([false, true].map(named), ["no_start_bit", "line_not_idle"]);
+        let named = |protocol: &Protocol| Reading::new(&[status], *protocol).cause_name();
+        let names: Vec<_> = Protocol::ALL.iter().map(named).collect();
+        assert_eq!(names, ["no_start_bit", "line_not_idle"]);
         for bit in 0..36 {
             let mut spoilt = words;
             spoilt[1 + bit / 32] ^= 1 << (bit % 32);
-            let checked = Reading::new(&spoilt, false).checked();
+            let checked = Reading::new(&spoilt, Protocol::Endat).checked();
             assert_eq!(
                 (checked.valid, checked.fresh, checked.cause_name()),
                 (false, false, "upset"),

@@ -3,6 +3,7 @@
 use crate::causes;
 use crc::{Crc, CRC_16_IBM_3740};
 use endat_driver::AdditionalData as Info;
+use endat_regs::Protocol;
 use std::mem;
 
 /// Check sum of a frame.
@@ -64,9 +65,9 @@ impl Sample {
             | flag(self.missing, status::MISSING)
     }
 
-    /// Name of the primary cause, on a channel that speaks one protocol or the other.
-    pub fn cause_name(&self, is_t_format: bool) -> &'static str {
-        causes::name(causes::of_code(self.cause, is_t_format))
+    /// Name of the primary cause, on a channel that speaks this protocol.
+    pub fn cause_name(&self, protocol: Protocol) -> &'static str {
+        causes::name(causes::of_code(self.cause, protocol))
     }
 }
 

@@ -1,9 +1,12 @@
 //! T-format encoders: requests of their own, beside those of the triggers.
 
 use crate::card::Card;
+use crate::name_plate::Told;
 use crate::registers::Place;
 use crate::transport::Transport;
+use crate::units::Scale;
 use crate::HostError;
+use endat_regs::Protocol;
 use std::time::Instant;
 
 /// Request whose reply has everything.
@@ -18,6 +21,22 @@ pub struct TFormatState {
     pub status: u32,
     /// Alarm field (ALMC).
     pub alarm: u32,
+}
+
+/// What a step of a position is.
+pub(crate) const SCALE: Scale = Scale::Counts { single_bits: 24 };
+
+impl TFormatState {
+    pub(crate) fn told(self) -> Told {
+        let [id, status, alarm] = [self.encoder_id, self.status, self.alarm];
+        Told {
+            lines: vec![
+                ("kind", format!("0x{id:02X} (ENID)")),
+                ("status, alarm", format!("0x{status:02X}, 0x{alarm:02X}")),
+            ],
+            fields: vec![("encoder_id", id), ("status", status), ("alarm", alarm)],
+        }
+    }
 }
 
 impl<T: Transport> Card<T> {
@@ -50,7 +69,7 @@ impl<T: Transport> Card<T> {
         };
         if of(&answer, "done", word) == 0 || of(&answer, "cause", word) != 0 {
             let cause = answer.register.field("cause");
-            let why = cause.and_then(|field| field.told(word, true));
+            let why = cause.and_then(|field| field.told(word, Protocol::TFormat));
             return Ok(Err(why.unwrap_or_else(|| "no end of the request".into())));
         }
         let word = self.read(&fields)?;

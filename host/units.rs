@@ -15,12 +15,12 @@ pub enum Scale {
         /// Measuring step in nanometres.
         step_nm: f64,
     },
-    /// Counts of a T-format encoder: single-turn in bits 23..0, turns above. How many of them are a turn, it does not tell.
-    TFormat,
+    /// Counts of an encoder that does not tell how many of them are a turn: those within the turn in the low bits, turns above.
+    Counts {
+        /// Bits that counts within the turn have.
+        single_bits: u32,
+    },
 }
-
-/// Bits of the single-turn part.
-const T_FORMAT_SINGLE_BITS: u32 = 24;
 
 /// A position in units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,18 +57,18 @@ impl Scale {
                 unit: "mm",
                 turns: None,
             },
-            Self::TFormat => InUnits {
-                value: (position & ((1 << T_FORMAT_SINGLE_BITS) - 1)) as f64,
+            Self::Counts { single_bits } => InUnits {
+                value: self.steps(position) as f64,
                 unit: "counts",
-                turns: Some(position >> T_FORMAT_SINGLE_BITS),
+                turns: Some(position >> single_bits),
             },
         }
     }
 
-    /// The part of a position that is counted on: a T-format encoder does not tell how many counts its turns have.
+    /// The part of a position that is counted on: not the turns, where nobody tells how many counts they have.
     pub fn steps(&self, position: u64) -> u64 {
         match self {
-            Self::TFormat => position & ((1 << T_FORMAT_SINGLE_BITS) - 1),
+            Self::Counts { single_bits } => position & ((1 << single_bits) - 1),
             Self::Rotary { .. } | Self::Linear { .. } => position,
         }
     }
@@ -83,7 +83,7 @@ impl Scale {
                 turns as f64 * 360.0 + within as f64 * 360.0 / turn as f64
             }
             Self::Linear { step_nm } => steps as f64 * step_nm * 1e-6,
-            Self::TFormat => steps as f64,
+            Self::Counts { .. } => steps as f64,
         }
     }
 
@@ -92,7 +92,7 @@ impl Scale {
         match *self {
             Self::Rotary { steps_per_turn } => 360.0 / steps_per_turn.max(1) as f64,
             Self::Linear { step_nm } => step_nm * 1e-6,
-            Self::TFormat => 1.0,
+            Self::Counts { .. } => 1.0,
         }
     }
 
@@ -102,11 +102,11 @@ impl Scale {
         match self {
             Self::Rotary { .. } => units.value / 360.0 * TAU,
             Self::Linear { .. } => units.value * 1e-3,
-            Self::TFormat => units.value,
+            Self::Counts { .. } => units.value,
         }
     }
 
-    /// The value in units that is 0 again; a T-format encoder does not tell its own.
+    /// The value in units that is 0 again; none where the encoder does not tell.
     pub fn wraps_at(&self) -> Option<f64> {
         matches!(self, Self::Rotary { .. }).then_some(360.0)
     }
@@ -141,14 +141,15 @@ mod tests {
     }
 
     #[test]
-    fn counts_of_t_format_are_taken_apart_and_not_turned_into_an_angle() {
-        let units = Scale::TFormat.convert(7 << 24 | 0x01_FFFF);
+    fn counts_are_taken_apart_and_not_turned_into_an_angle() {
+        let counts = Scale::Counts { single_bits: 24 };
+        let units = counts.convert(7 << 24 | 0x01_FFFF);
         assert_eq!(
             (units.value, units.turns, units.unit),
             (131_071.0, Some(7), "counts")
         );
-        assert_eq!(Scale::TFormat.digits(), 0);
-        assert_eq!(Scale::TFormat.si(5), 5.0);
+        assert_eq!(counts.digits(), 0);
+        assert_eq!(counts.si(5), 5.0);
     }
 
     #[test]

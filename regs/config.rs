@@ -32,7 +32,7 @@ pub const CARD_CONFIG: Block = Block {
             ReadWrite,
             "Period of the timer, at least 4; write it while the timer is disabled.",
             &[field("value", 0, 24, "cycles", "Period")
-            .takes(&[(4, 0xFF_FFFF)], &[])],
+            .takes(&[(4, 0xFF_FFFF)])],
         ),
         word(
             "hold",
@@ -64,14 +64,14 @@ pub const CHANNEL_CONFIG: Block = Block {
             "What is asked of the encoder, and how fast.",
             &[
                 field("period_cycles", 0, 11, "cycles", "EnDat clock period; the high phase is the longer one when odd; T-format: a bit, 8..127")
-                .takes(&[(2, 2047)], &[(8, 127)]),
+                .takes(&[(2, 2047)]).by_protocol("period_cycles"),
                 field("skip", 11, 5, "", "Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources"),
                 field("position_bits", 16, 6, "bits", "Position width, 1..48; T-format: no meaning, as command")
-                .takes(&[(1, 48)], &[]),
+                .takes(&[(1, 48)]).by_protocol("position_bits"),
                 field("ignore_pin", 22, 1, "", "1: the trigger pin is not for this channel"),
                 field("ignore_timer", 23, 1, "", "1: the timer is not"),
                 field("command", 24, 6, "", "Mode command, sent most significant bit first")
-                .codes(POSITION_COMMANDS),
+                .codes(POSITION_COMMANDS).by_protocol("command"),
                 field("ignore_register", 30, 1, "", "1: trigger_now is not"),
             ],
         ),
@@ -86,7 +86,7 @@ pub const CHANNEL_CONFIG: Block = Block {
                 field("filter_half", 23, 1, "", "1: half a cycle more; with part double_edge only"),
                 field("filter_cycles", 24, 4, "cycles", "Pulses on DATA up to this length are ignored; 0 = off"),
                 field("request_id", 28, 4, "", "T-format: request ID of a trigger; 6 and 13 are not sent")
-                .takes(&[], &[(0, 5), (7, 12), (14, 15)]),
+                .by_protocol("request_id"),
             ],
         ),
         word(
@@ -96,7 +96,7 @@ pub const CHANNEL_CONFIG: Block = Block {
             "Longest waits.",
             &[
                 field("start_timeout_us", 0, 12, "us", "Longest wait for the start bit after the turnaround; T-format: longest pause before the reply, 1..63")
-                .takes(&[], &[(1, 63)]),
+                .by_protocol("start_timeout_us"),
                 field("recovery_limit_cycles", 16, 13, "cycles", "DATA must fall within this after the frame (tm)"),
                 field("field_gap_us", 29, 3, "us", "T-format: longest pause between two fields"),
             ],

@@ -25,23 +25,6 @@ impl Access {
     }
 }
 
-/// Numbers that the card takes, each range from and to; none = all that fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Of a channel that speaks EnDat, and of the card.
-    pub endat: &'static [(u32, u32)],
-    /// Of a channel that speaks T-format.
-    pub t_format: &'static [(u32, u32)],
-}
-
-impl Limits {
-    /// All numbers that fit.
-    pub const ANY: Self = Self {
-        endat: &[],
-        t_format: &[],
-    };
-}
-
 /// Some bits of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
@@ -57,46 +40,16 @@ pub struct Field {
     pub meaning: &'static str,
     /// What single numbers or bits stand for.
     pub values: Values,
-    /// The same in a channel that speaks T-format; none = no other than `values`.
-    pub t_format_values: Option<Values>,
-    /// Which numbers the card takes.
-    pub limits: Limits,
+    /// Numbers that the card takes, each range from and to; none = all that fit.
+    pub takes: &'static [(u32, u32)],
+    /// Name under which protocols may have `values` and `takes` of their own for it (`Protocol::own`); none: it is the same in all of them.
+    pub by_protocol: Option<&'static str>,
 }
 
 impl Field {
     /// The field's number in a word.
     pub const fn of(&self, word: u32) -> u32 {
         (word & self.mask()) >> self.lsb
-    }
-
-    /// Whether it takes this number in a channel that speaks one protocol or the other.
-    pub fn allows(&self, value: u32, is_t_format: bool) -> bool {
-        let ranges = self.ranges(is_t_format);
-        match self.values_in(is_t_format) {
-            _ if !ranges.is_empty() => ranges
-                .iter()
-                .any(|(low, high)| (*low..=*high).contains(&value)),
-            // Without a list of its own T-format takes what it has no name for.
-            Values::Codes(codes) if !is_t_format || self.t_format_values.is_some() => {
-                codes.iter().any(|c| c.number == value)
-            }
-            _ => true,
-        }
-    }
-
-    /// What single numbers or bits stand for in a channel that speaks one protocol or the other.
-    pub const fn values_in(&self, is_t_format: bool) -> Values {
-        match self.t_format_values {
-            Some(values) if is_t_format => values,
-            _ => self.values,
-        }
-    }
-
-    pub(crate) const fn ranges(&self, is_t_format: bool) -> &'static [(u32, u32)] {
-        match is_t_format {
-            true => self.limits.t_format,
-            false => self.limits.endat,
-        }
     }
 
     /// A word with this field changed; none if `value` does not fit.
@@ -117,18 +70,14 @@ impl Field {
     }
 
     /// The same field, which takes these numbers only.
-    pub(crate) const fn takes(
-        mut self,
-        endat: &'static [(u32, u32)],
-        t_format: &'static [(u32, u32)],
-    ) -> Self {
-        self.limits = Limits { endat, t_format };
+    pub(crate) const fn takes(mut self, ranges: &'static [(u32, u32)]) -> Self {
+        self.takes = ranges;
         self
     }
 
-    /// The same field, whose numbers or bits stand for something else in a channel that speaks T-format.
-    pub(crate) const fn in_t_format(mut self, values: Values) -> Self {
-        self.t_format_values = Some(values);
+    /// The same field, for which protocols may have something of their own under this name.
+    pub(crate) const fn by_protocol(mut self, name: &'static str) -> Self {
+        self.by_protocol = Some(name);
         self
     }
 
@@ -184,8 +133,8 @@ pub(crate) const fn field(
         unit,
         meaning,
         values: Values::Plain,
-        t_format_values: None,
-        limits: Limits::ANY,
+        takes: &[],
+        by_protocol: None,
     }
 }
 

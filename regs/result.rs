@@ -1,16 +1,14 @@
 //! The result of a channel.
 
-use crate::causes::{self, endat, t_format};
+use crate::causes::{cause::row, endat};
 use crate::part::Part;
-use crate::{
-    field, named::named, word, Access, Block, Field, Named, Values, BLOCK_STRIDE, RESULT_BASE,
-};
+use crate::{field, named::named, word, Access, Block, Field, Named, BLOCK_STRIDE, RESULT_BASE};
 use Access::ReadOnly;
 
 /// The raw flag of a cause, in a field that begins with this raw flag.
 const fn flag_of(code: u64, first: u32) -> Named {
     let place = endat::flag(code).trailing_zeros() - first;
-    let cause = causes::row(endat::ALL, code);
+    let cause = row(endat::ALL, code);
     named(cause.name, place, cause.meaning)
 }
 
@@ -38,7 +36,8 @@ pub const EVIDENCE_FLAGS: &[Named] = &[
     flag_of(endat::INFO_MISSING, 0),
 ];
 
-const LINE_FIRST: u32 = EVIDENCE_FLAGS.len() as u32;
+/// The first raw flag that stands in the status.
+pub(crate) const LINE_FIRST: u32 = EVIDENCE_FLAGS.len() as u32;
 
 /// Raw flags that stand in the status.
 pub const LINE_FLAGS: &[Named] = &[
@@ -55,25 +54,6 @@ pub const LINE_FLAGS: &[Named] = &[
         endat::name(endat::UPSET),
     ),
 ];
-
-/// Raw flags of T-format, from flag `FIRST` on.
-const fn t_format_flags<const FIRST: usize, const N: usize>() -> [Named; N] {
-    let mut flags = [named("", 0, ""); N];
-    let mut bit = 0;
-    while bit < N {
-        // The code of a flag is its number plus one.
-        let cause = &t_format::ALL[FIRST + bit + 1];
-        assert!(t_format::flag(cause.code) == 1 << (FIRST + bit));
-        flags[bit] = named(cause.name, bit as u32, cause.meaning);
-        bit += 1;
-    }
-    flags
-}
-
-/// Flags of T-format that stand beside the evidence, and in the status.
-const T_FORMAT_EVIDENCE: &[Named] = &t_format_flags::<0, { LINE_FIRST as usize }>();
-const T_FORMAT_LINE: &[Named] =
-    &t_format_flags::<{ LINE_FIRST as usize }, { t_format::ALL.len() - 1 - LINE_FIRST as usize }>();
 
 /// Offset of the first of the two words that cards with requests have.
 pub const INFO_FIRST: u8 = 6;
@@ -125,10 +105,10 @@ pub const RESULT: Block = Block {
     registers: &[
         word("status", 0, ReadOnly, "What became of the last trigger.", &[
             field("sequence", 0, 16, "", "Number of results, wrapping"),
-            field("cause", 16, 5, "", "Primary cause; some come with a good position: fresh tells").codes(causes::ENDAT).in_t_format(Values::Codes(causes::T_FORMAT)),
+            field("cause", 16, 5, "", "Primary cause; some come with a good position: fresh tells").codes(endat::CODED).by_protocol("cause"),
             field("valid", 22, 1, "", "There is a good position"),
             field("fresh", 23, 1, "", "The last result brought the position; 0 = held from an earlier one"),
-            field("line", 24, 8, "", "Raw flags that evidence has no room for").bits(LINE_FLAGS).in_t_format(Values::Bits(T_FORMAT_LINE)),
+            field("line", 24, 8, "", "Raw flags that evidence has no room for").bits(LINE_FLAGS).by_protocol("line"),
         ]),
         word("position_low", 1, ReadOnly, "Last good position, bits 31..0.", &[
             field("value", 0, 32, "", "Bit 0 is the LSB"),
@@ -146,7 +126,7 @@ pub const RESULT: Block = Block {
             field("crc_received", 0, 5, "", "CRC as received"),
             field("crc_computed", 5, 5, "", "CRC as computed"),
             field("delay_cycles", 10, 10, "cycles", "Tracked line delay tD, synchroniser and filter included"),
-            field("flags", 20, 12, "", "Raw flags; the rest of them is status.line").bits(EVIDENCE_FLAGS).in_t_format(Values::Bits(T_FORMAT_EVIDENCE)),
+            field("flags", 20, 12, "", "Raw flags; the rest of them is status.line").bits(EVIDENCE_FLAGS).by_protocol("flags"),
         ]),
         word("age_recovery", 5, ReadOnly, "Age and recovery time.", &[
             field("age_us", 0, 16, "us", "Age of the position: 0 until its frame has ended, counted from there, also while results are held; stops at 65535"),

@@ -19,7 +19,7 @@ use Access::{ReadOnly, ReadWrite};
 const VALUE: &[Field] = &[field("value", 0, 32, "", "Number")];
 const HIGH: &[Field] = &[field("value", 0, 16, "", "Bits 47..32")];
 const CODE: &[Field] =
-    &[field("mrs", 0, 8, "", "MRS code 0x40..0x5E").takes(&[(0, 0), (0x40, 0x5E)], &[])];
+    &[field("mrs", 0, 8, "", "MRS code 0x40..0x5E").takes(&[(0, 0), (0x40, 0x5E)])];
 const SLOT: &[Field] = &[
     field("value", 0, 16, "", "Content"),
     field(
@@ -54,7 +54,7 @@ const fn frames(cause: u8) -> Register {
     let counter = word(
         match cause {
             0 => "frames_good",
-            cause => crate::causes::row(endat::ALL, cause as u64).counter,
+            cause => crate::causes::cause::row(endat::ALL, cause as u64).counter,
         },
         at::COUNTERS + cause,
         ReadOnly,
@@ -143,7 +143,7 @@ pub const SERVICE: Block = Block {
         ]),
         word("threshold", at::THRESHOLD, ReadWrite, "Alarm: n bad frames of the last m.", &[
             field("n", 0, 16, "frames", "0 = no alarm"),
-            field("m", 16, 16, "frames", "1..16; another m begins a new count").takes(&[(1, 16)], &[]),
+            field("m", 16, 16, "frames", "1..16; another m begins a new count").takes(&[(1, 16)]),
         ]),
         word("bad_frames", at::BAD_FRAMES, ReadOnly, "Bad frames of the last m.", &[
             field("count", 0, 16, "frames", "How many"),
@@ -161,7 +161,7 @@ pub const SERVICE: Block = Block {
         word("position_2_low", at::POSITION_2[0], ReadOnly, "Position 2, bits 31..0.", VALUE),
         word("position_2_high", at::POSITION_2[1], ReadOnly, "Position 2, bits 47..32.", HIGH),
         word("list_length", at::LIST_LENGTH, ReadWrite, "Codes of the list that are selected in turn.", &[
-            field("length", 0, 4, "", "0..8; more is 8").takes(&[(0, 8)], &[]),
+            field("length", 0, 4, "", "0..8; more is 8").takes(&[(0, 8)]),
         ]),
         word("info_status", at::INFO_STATUS, ReadOnly, "WRN, RM, Busy, I4..I0 as they came last with a right CRC.", &[
             field("info_1", 0, 8, "", "Of additional data 1"),
@@ -197,7 +197,7 @@ pub const SERVICE: Block = Block {
             field("ms", 0, 16, "ms", "0 = no limit. The program writes 2000 at start"),
         ]),
         word("error_test", at::ERROR_TEST, ReadWrite, "Forced errors on the card's own schedule.", &[
-            field("period_ms", 0, 16, "ms", "One error each so many milliseconds, in a frame of its own: 10 to 32000, 0 = none. Begins with safety.error_test_ms of the configuration").takes(&[(0, 0), (ERROR_TEST_PATIENCE_MS as u32, ERROR_TEST_MS_MAX as u32)], &[]),
+            field("period_ms", 0, 16, "ms", "One error each so many milliseconds, in a frame of its own: 10 to 32000, 0 = none. Begins with safety.error_test_ms of the configuration").takes(&[(0, 0), (ERROR_TEST_PATIENCE_MS as u32, ERROR_TEST_MS_MAX as u32)]),
         ]).of(Part::ErrorTest),
         word("error_test_state", at::ERROR_TEST_STATE, ReadOnly, "What became of them.", &[
             field("told", 0, 16, "", "Forced errors that were told with their cause, since clear, wrapping"),

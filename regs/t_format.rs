@@ -1,13 +1,75 @@
 //! The port of a T-format encoder: requests of the host, fields of the replies. Its settings are those of its configuration.
 
-use crate::causes::EXCHANGE;
+use crate::causes::{cause::coded, t_format as cause};
+use crate::named::named;
 use crate::part::Part;
-use crate::{field, word, Access, Block, BLOCK_STRIDE, T_FORMAT_BASE};
+use crate::protocol_row::{channels, OwnField, ProtocolRow};
+use crate::result::LINE_FIRST;
+use crate::{field, word, Access, Block, Named, Values, BLOCK_STRIDE, T_FORMAT_BASE};
 use word as at;
 use Access::{ReadOnly, Strobe};
 
 /// Resets count only so many times in a row.
 pub const RESETS_IN_A_ROW: u32 = 10;
+
+/// What card and host agree on of T-format.
+pub const PROTOCOL: ProtocolRow = ProtocolRow {
+    name: "T-format",
+    word: "t_format",
+    means: "T-format",
+    has_clock: false,
+    causes: cause::ALL,
+    coded: CAUSES,
+    blocks: &["t_format"],
+    fields: FIELDS,
+    channels: channels("t_format"),
+    part: Some(Part::TFormat),
+};
+
+/// Causes under the codes of a result.
+const CAUSES: &[Named] = &coded::<{ cause::ALL.len() }>(cause::ALL);
+/// Causes as an exchange of the host has them: those before the trigger overrun.
+const EXCHANGE: &[Named] = &coded::<{ cause::TRIGGER_OVERRUN as usize }>(cause::ALL);
+
+/// Raw flags from flag `FIRST` on.
+const fn flags<const FIRST: usize, const N: usize>() -> [Named; N] {
+    let mut flags = [named("", 0, ""); N];
+    let mut bit = 0;
+    while bit < N {
+        // The code of a flag is its number plus one.
+        let cause = &cause::ALL[FIRST + bit + 1];
+        assert!(cause::flag(cause.code) == 1 << (FIRST + bit));
+        flags[bit] = named(cause.name, bit as u32, cause.meaning);
+        bit += 1;
+    }
+    flags
+}
+
+/// Raw flags that stand beside the evidence, and in the status.
+const EVIDENCE: &[Named] = &flags::<0, { LINE_FIRST as usize }>();
+const LINE: &[Named] =
+    &flags::<{ LINE_FIRST as usize }, { cause::ALL.len() - 1 - LINE_FIRST as usize }>();
+
+const FIELDS: &[OwnField] = &[
+    own("cause", Values::Codes(CAUSES), &[]),
+    own("line", Values::Bits(LINE), &[]),
+    own("flags", Values::Bits(EVIDENCE), &[]),
+    own("period_cycles", Values::Plain, &[(8, 127)]),
+    own("position_bits", Values::Plain, &[]),
+    own("command", Values::Plain, &[]),
+    own("request_id", Values::Plain, &[(0, 5), (7, 12), (14, 15)]),
+    own("start_timeout_us", Values::Plain, &[(1, 63)]),
+    // The port refuses what is no request, with a cause.
+    own("send_id", Values::Codes(request::ALL), &[(0, 15)]),
+];
+
+const fn own(field: &'static str, values: Values, takes: &'static [(u32, u32)]) -> OwnField {
+    OwnField {
+        field,
+        values,
+        takes,
+    }
+}
 
 /// Requests, by their ID on the wire.
 pub mod request {
@@ -53,7 +115,7 @@ pub const T_FORMAT: Block = Block {
         word("send", at::SEND, Strobe, "Sends one request, now or as soon as the exchange under way has ended; not taken while answer.busy.", &[
             field("data", 0, 8, "", "EEPROM data, of request 6"),
             field("address", 8, 7, "", "EEPROM address, of requests 6 and 13; 127 is the page register"),
-            field("id", 16, 4, "", "Request ID").codes(request::ALL),
+            field("id", 16, 4, "", "Request ID").codes(request::ALL).by_protocol("send_id"),
         ]),
         word("answer", at::ANSWER, ReadOnly, "What became of the request in send.", &[
             field("data", 0, 8, "", "EEPROM data as they came last"),

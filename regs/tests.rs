@@ -88,8 +88,9 @@ fn values_fit_their_fields() {
         .flat_map(|r| r.fields);
     let mut lists = 0;
     let both = |field: &'static Field| {
-        let values = [Some(field.values), field.t_format_values];
-        values.into_iter().flatten().map(move |v| (field, v))
+        let others = field.values_elsewhere().map(|(_, values)| values);
+        let all = core::iter::once(field.values).chain(others);
+        all.map(move |v| (field, v))
     };
     for (field, values) in fields.flat_map(both) {
         let (listed, limit) = match values {

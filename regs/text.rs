@@ -1,32 +1,32 @@
 //! What a field says, in words: for hosts, which have a heap.
 
-use crate::{Field, Values};
+use crate::{Field, Protocol, Values};
 use alloc::borrow::ToOwned;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 impl Field {
-    /// What it takes in a channel that speaks one protocol or the other, if `value` is nothing of it.
-    pub fn refusal(&self, value: u32, is_t_format: bool) -> Option<String> {
-        if self.allows(value, is_t_format) {
+    /// What it takes in a channel that speaks this protocol, if `value` is nothing of it.
+    pub fn refusal(&self, value: u32, protocol: Protocol) -> Option<String> {
+        if self.allows(value, protocol) {
             return None;
         }
         let shown = |(low, high): &(u32, u32)| match low == high {
             true => low.to_string(),
             false => format!("{low}..{high}"),
         };
-        let ranges = self.ranges(is_t_format);
-        Some(match self.values_in(is_t_format) {
+        let ranges = self.ranges(protocol);
+        Some(match self.values_in(protocol) {
             Values::Codes(codes) if ranges.is_empty() => list(codes.iter().map(|c| c.name)),
             _ => ranges.iter().map(shown).collect::<Vec<_>>().join(", "),
         })
     }
 
-    /// What the field's number in a word of a channel that speaks one protocol or the other says, if it stands for something.
-    pub fn told(&self, word: u32, is_t_format: bool) -> Option<String> {
+    /// What the field's number in a word of a channel that speaks this protocol says, if it stands for something.
+    pub fn told(&self, word: u32, protocol: Protocol) -> Option<String> {
         let value = self.of(word);
-        match self.values_in(is_t_format) {
+        match self.values_in(protocol) {
             Values::Plain => None,
             Values::Codes(codes) => {
                 let code = codes.iter().find(|c| c.number == value);

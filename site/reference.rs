@@ -5,7 +5,7 @@ use clap::Command;
 use endat_gen::cli::command_line;
 use endat_gen::config::load_preset;
 use endat_gen::error::GenError;
-use endat_regs::causes;
+use endat_regs::{causes, Protocol};
 use std::fmt::Write;
 
 /// All of them.
@@ -54,10 +54,8 @@ fn causes_page() -> String {
     let mut text = String::from(
         "# Causes\n\nWhy a trigger brought no position, or what there is to say about the one that it brought. `explain CAUSE` tells the same.\n",
     );
-    for (title, all) in [
-        ("EnDat", causes::endat::ALL),
-        ("T-format", causes::t_format::ALL),
-    ] {
+    for protocol in Protocol::ALL {
+        let (title, all) = (protocol.name(), protocol.row().causes);
         let _ = write!(
             text,
             "\n## {title}\n\n| code | cause | meaning | what it means | what to do |\n|---|---|---|---|---|\n"

@@ -1,7 +1,7 @@
 //! `new`: questions, and the configurations that come of them.
 
 use crate::program::{bad, good, program, run, Dir};
-use endat_gen::config::keys::{KEYS, TABLES};
+use endat_gen::config::keys::{ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES};
 use endat_gen::config::{parse_any, Configuration};
 use endat_gen::json_schema::plain;
 use std::io::Write;
@@ -123,8 +123,8 @@ fn every_key_is_there_with_what_the_table_of_keys_says() {
     let receiver = joined(&good(&["new", "--yes", "--bus", "dsp", "-"]));
     for key in KEYS {
         let told = joined(&plain(&format!("{}: {}", key.meaning, key.may_be(""))));
-        let is_here =
-            [(&card, 1), (&receiver, 4)].map(|(text, form)| (text, key.forms & form != 0));
+        let is_here = [(&card, ENDAT_FORM), (&receiver, RECEIVER_FORM)]
+            .map(|(text, form)| (text, key.forms & form != 0));
         for (text, is_here) in is_here {
             assert_eq!(text.contains(&told), is_here, "{}: {told}", key.name);
         }
@@ -161,7 +161,7 @@ fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
     let card = endat_gen::config::load_file(path.as_ref()).unwrap();
     assert_eq!(card.card.channels.len(), 2);
     assert_eq!(card.encoders, ["ROD 1", "ROD 1"]);
-    assert_eq!(card.card.channels[1].request.clock_hz, 4_000_000);
+    assert_eq!(card.card.channels[1].spec.clock_hz, 4_000_000);
     let written = std::fs::read_to_string(&path).unwrap();
     assert!(
         written.contains("\nsources = [\"timer\", \"register\"]\n"),

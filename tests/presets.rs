@@ -72,7 +72,7 @@ fn encoder(channel: &ChannelConfig, initialise: bool, corner: Corner) -> Encoder
         encoder.tm = pick([SHORT_RECOVERY_MIN_NS, RECOVERY_MAX_NS]);
     }
     encoder.tcal = match corner.tcal_long {
-        true => channel.request.tcal_max_ns * NS,
+        true => channel.spec.tcal_max_ns * NS,
         false => US,
     };
     encoder.reset_time = 2 * MS;
@@ -83,13 +83,13 @@ fn encoder(channel: &ChannelConfig, initialise: bool, corner: Corner) -> Encoder
 
 fn cable_m(channel: &ChannelConfig, corner: Corner) -> f64 {
     match corner.cable_long {
-        true => channel.request.cable_m as f64,
+        true => channel.spec.cable_m as f64,
         false => 0.5,
     }
 }
 
 fn t_format_encoder(channel: &ChannelConfig, corner: Corner) -> t_format::EncoderConfig {
-    let request = channel.t_format.unwrap();
+    let request = *channel.spoken.t_format().unwrap();
     let ppm = RATE_TOLERANCE_PPM as i64;
     t_format::EncoderConfig {
         bit_hz: request.bit_hz,
@@ -136,7 +136,7 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize) -> Vec<String> {
     };
     let mut links = vec![];
     for (n, channel) in card.channels.iter().enumerate() {
-        if channel.t_format.is_none() {
+        if channel.is_endat() {
             let line = LineConfig::cable(cable_m(channel, corner(n)));
             let mut encoder = encoder(channel, card.service.initialise, corner(n));
             encoder.seed = n as u64 + 1;
@@ -151,7 +151,7 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize) -> Vec<String> {
     let system_hz = (card.system_hz as i64 + card.system_hz as i64 / 1_000_000 * ppm) as u64;
     let mut bench = Bench::new(engine.clone(), system_hz, links);
     for (n, channel) in card.channels.iter().enumerate() {
-        if channel.t_format.is_some() {
+        if !channel.is_endat() {
             let link = TFormatLink::new(t_format_encoder(channel, corner(n)), 50 * NS);
             bench.add_t_format(&PinNames::card(n), link);
         }
@@ -234,8 +234,8 @@ fn every_preset_runs_without_a_fault_at_corners_of_its_encoders() {
         }
         // Its limits are those of all encoders that know its command.
         for channel in &project.card.channels {
-            if channel.t_format.is_none() {
-                let request = &channel.request;
+            if channel.is_endat() {
+                let request = &channel.spec;
                 assert!(
                     request.recovery_min_ns <= RECOVERY_MIN_NS
                         && request.recovery_max_ns >= RECOVERY_MAX_NS,

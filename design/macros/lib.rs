@@ -6,18 +6,18 @@
 mod bundle;
 mod comments;
 mod connect;
+mod elsewhere;
 mod parts;
+mod registers;
 
 use proc_macro::TokenStream;
 use proc_macro2::{Ident, TokenStream as TokenStream2};
 use quote::{format_ident, quote, quote_spanned};
-use std::collections::BTreeSet;
 use syn::punctuated::Punctuated;
-use syn::visit::{visit_angle_bracketed_generic_arguments, visit_expr_field, Visit};
+use syn::visit::{visit_angle_bracketed_generic_arguments, Visit};
 use syn::{
-    parse_macro_input, AngleBracketedGenericArguments, Attribute, Data, DeriveInput, Expr,
-    ExprField, Field, Fields, GenericArgument, GenericParam, ImplItem, ItemFn, ItemImpl, Lit,
-    LitStr, Member, Token, Type, TypePath,
+    parse_macro_input, AngleBracketedGenericArguments, Attribute, Data, DeriveInput, Expr, Field,
+    Fields, GenericArgument, GenericParam, ImplItem, ItemImpl, Lit, LitStr, Token, Type, TypePath,
 };
 
 /// The parts of a block, and what is written about them. Signals and bundles begin empty, registers with 0 or what `#[start(...)]` says,
@@ -357,11 +357,47 @@ pub fn ports(arguments: TokenStream, item: TokenStream) -> TokenStream {
 ///     fn wait(&mut self) { /* ... */ }
 /// }
 /// ```
+///
+/// Parts in another file are an `impl` with [`macro@kernel_parts`] and a name there, which the kernel gives: `#[kernel(parts = states::waits)]`.
 #[proc_macro_attribute]
 pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
+    let mut item = parse_macro_input!(item as ItemImpl);
+    lift_comments(&mut item);
+    if let Ok(elsewhere) = syn::parse::<elsewhere::Named>(arguments.clone()) {
+        return elsewhere.asked_for(&item).into();
+    }
     let parser = Punctuated::<Ident, Token![,]>::parse_terminated;
     let names = parse_macro_input!(arguments with parser);
+    finished(names, item)
+}
+
+/// Parts of a kernel that stands in another file; the argument is the name that the kernel asks for them by.
+///
+/// ```ignore
+/// #[kernel_parts(waits)]
+/// impl Timer {
+///     /// The end of the time.
+///     fn wait(&mut self) { /* ... */ }
+/// }
+/// ```
+#[proc_macro_attribute]
+pub fn kernel_parts(arguments: TokenStream, item: TokenStream) -> TokenStream {
+    let name = parse_macro_input!(arguments as Ident);
     let mut item = parse_macro_input!(item as ItemImpl);
+    lift_comments(&mut item);
+    elsewhere::handed_on(&name, &item).into()
+}
+
+/// A kernel behind parts of another file: what [`macro@kernel`] and [`macro@kernel_parts`] make of themselves.
+#[doc(hidden)]
+#[proc_macro]
+pub fn kernel_of_parts(both: TokenStream) -> TokenStream {
+    let elsewhere::Both(item) = parse_macro_input!(both as elsewhere::Both);
+    finished(Punctuated::new(), item)
+}
+
+/// Puts the comments of an `impl` into its functions.
+fn lift_comments(item: &mut ItemImpl) {
     let source = source_of(item.impl_token.span);
     let source: Vec<String> = source.lines().map(str::to_owned).collect();
     for inner in &mut item.items {
@@ -369,8 +405,12 @@ pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
             comments::lift(function, &source);
         }
     }
+}
+
+/// The kernel, out of an `impl` with all of its parts.
+fn finished(names: Punctuated<Ident, Token![,]>, mut item: ItemImpl) -> TokenStream {
     let kernel = parts::kernel_of(&mut item)
-        .and_then(|kernel| whole_kernel(names.into_iter().collect(), kernel));
+        .and_then(|kernel| registers::whole_kernel(names.into_iter().collect(), kernel));
     match kernel {
         Err(wrong) => wrong.into_compile_error().into(),
         Ok(kernel) => {
@@ -387,91 +427,6 @@ pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
             .into()
         }
     }
-}
-
-/// What stands in the block for this kernel.
-fn whole_kernel(names: Vec<Ident>, mut item: ItemFn) -> syn::Result<TokenStream2> {
-    connect::expand(&mut item.block)?;
-    let usual = || ["clock", "reset"].map(|name| Ident::new(name, proc_macro2::Span::call_site()));
-    let [clock, reset] = match &names[..] {
-        [] => usual(),
-        [clock, reset] => [clock.clone(), reset.clone()],
-        [one, ..] => {
-            let text = "kernel takes two names, of clock and reset";
-            return Err(syn::Error::new(one.span(), text));
-        }
-    };
-    let mut found = Assigned::default();
-    found.visit_block(&item.block);
-    let Assigned {
-        registers, resets, ..
-    } = found;
-    let reset_here: Vec<&Ident> = registers.iter().filter(|r| !resets.contains(r)).collect();
-    let statements = &item.block.stmts;
-    let setup = match registers.is_empty() {
-        true => quote!(),
-        false => quote! {
-            #(self.#registers.clock.next = self.#clock.val();)*
-            #(self.#registers.d.next = self.#registers.q.val();)*
-            #(self.#reset_here.reset.next = self.#reset.val();)*
-        },
-    };
-    *item.block = syn::parse_quote!({ #setup #(#statements)* });
-    Ok(quote! {
-        #[hdl_gen]
-        #item
-
-        fn timing(&self) -> Vec<TimingInfo> {
-            ::rtl_design::elaborate::docs::timing(&<Self as ::rtl_design::elaborate::docs::Described>::DOCS)
-        }
-    })
-}
-
-/// The registers that a kernel assigns, in the order in which it does.
-#[derive(Default)]
-struct Assigned {
-    registers: Vec<Ident>,
-    known: BTreeSet<String>,
-    /// Those whose reset it assigns itself.
-    resets: BTreeSet<Ident>,
-}
-
-impl<'ast> Visit<'ast> for Assigned {
-    fn visit_expr_field(&mut self, field: &'ast ExprField) {
-        if let Some((part, port)) = next_of(field) {
-            if port == "d" && self.known.insert(part.to_string()) {
-                self.registers.push(part.clone());
-            }
-            if port == "reset" {
-                self.resets.insert(part.clone());
-            }
-        }
-        visit_expr_field(self, field);
-    }
-}
-
-/// What a field is of, and its name.
-fn split(field: &ExprField) -> Option<(&Expr, &Ident)> {
-    match &field.member {
-        Member::Named(name) => Some((&field.base, name)),
-        Member::Unnamed(_) => None,
-    }
-}
-
-fn as_field(expr: &Expr) -> Option<&ExprField> {
-    match expr {
-        Expr::Field(field) => Some(field),
-        _ => None,
-    }
-}
-
-/// `self.part.port.next`: part and port.
-fn next_of(field: &ExprField) -> Option<(&Ident, &Ident)> {
-    let (port, next) = split(field)?;
-    let (part, port) = split(as_field(port)?)?;
-    let (block, part) = split(as_field(part)?)?;
-    let is_self = matches!(block, Expr::Path(path) if path.path.is_ident("self"));
-    (next == "next" && is_self).then_some((part, port))
 }
 
 fn refuse(place: &Ident, text: &str) -> TokenStream {

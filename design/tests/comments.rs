@@ -31,7 +31,10 @@ impl Lamps {
     }
 }
 
-#[kernel]
+#[path = "comments/elsewhere.rs"]
+mod elsewhere;
+
+#[kernel(parts = elsewhere::counting)]
 impl Logic for Lamps {
     fn update(&mut self) {
         for i in 0..2 {
@@ -54,25 +57,6 @@ impl Logic for Lamps {
         }
 
         // Says nothing about any statement.
-    }
-
-    /// Counts, and
-    /// shows.
-    fn count_lamps(&mut self) {
-        self.count.next = self.counter.q.val();
-        // Two cases.
-        match self.wanted.val().index() {
-            0 => self.dark(),
-            // This one is not handed on: it is about no statement.
-            _ => {
-                // Something is wanted.
-                self.shown.next = self.wanted.val();
-                if self.wanted.val().all() {
-                    // Both.
-                    self.counter.d.next = self.counter.q.val() + 1;
-                }
-            }
-        }
     }
 
     /// Nothing is wanted.

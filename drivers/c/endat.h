@@ -304,12 +304,14 @@ typedef struct {
     uint8_t data;  /**< EEPROM data as they came last. */
 } endat_reply;
 
-/** Fields of the last reply of a T-format encoder, of a trigger or of a request. */
+/** Fields of the last reply of a T-format encoder, of a trigger or of a request, and which parts of the position there are. */
 typedef struct {
     uint8_t status;     /**< Status field (SF); 0 if none came. */
     uint8_t encoder_id; /**< Kind of encoder (ENID) as it came last. */
     uint8_t alarm;      /**< Alarm field (ALMC) as it came last. */
     uint8_t crc;        /**< CRC as received. */
+    bool has_single_turn; /**< A single-turn position has come since reset: bits 23..0 of a position. */
+    bool has_multi_turn;  /**< A multi-turn position has come since reset: bits 47..24. */
 } endat_fields;
 
 /**
@@ -348,7 +350,7 @@ endat_error endat_write_eeprom(const endat_card *card, uint32_t channel, uint32_
  * @return ENDAT_ERROR_EXCHANGE if one of them failed, or an alarm is still there behind them: reply->cause.
  */
 endat_error endat_reset_encoder(const endat_card *card, uint32_t channel, uint32_t id, uint32_t limit_ms, endat_reply *reply);
-/** Fields of the last reply. */
+/** Fields of the last reply, and which parts of the position there are. */
 endat_error endat_read_fields(const endat_card *card, uint32_t channel, endat_fields *fields);
 
 /** Settings of a T-format channel, as the register map explains them. */

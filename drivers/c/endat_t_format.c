@@ -234,15 +234,21 @@ endat_error endat_reset_encoder(const endat_card *card, uint32_t channel, uint32
 endat_error endat_read_fields(const endat_card *card, uint32_t channel, endat_fields *fields)
 {
     uint32_t word = 0u;
+    uint32_t parts = 0u;
     endat_error error = endat_needs_t_format(card, channel);
 
     if (error == ENDAT_OK) {
         error = endat_read_word(card, ENDAT_MAP_T_FORMAT_FIELDS_WORD(channel), &word);
     }
+    if (error == ENDAT_OK) {
+        error = endat_read_word(card, ENDAT_MAP_T_FORMAT_PARTS_WORD(channel), &parts);
+    }
     fields->status = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_FIELDS_STATUS, word);
     fields->encoder_id = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_FIELDS_ENCODER_ID, word);
     fields->alarm = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_FIELDS_ALARM, word);
     fields->crc = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_FIELDS_CRC, word);
+    fields->has_single_turn = ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_PARTS_SINGLE_VALID, parts) != 0u;
+    fields->has_multi_turn = ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_PARTS_MULTI_VALID, parts) != 0u;
     return error;
 }
 

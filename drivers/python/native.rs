@@ -100,11 +100,8 @@ impl NativeCard {
         let [major, minor, patch] = identity.version;
         all.set_item("register_map", format!("{major}.{minor}.{patch}"))?;
         all.set_item("channels", identity.channels)?;
-        let protocol = |n| match identity.is_t_format(n) {
-            true => "T-format",
-            false => "EnDat",
-        };
-        let protocols: Vec<&str> = (0..identity.channels).map(protocol).collect();
+        let channels = 0..identity.channels;
+        let protocols: Vec<&str> = channels.map(|n| identity.protocol(n).name()).collect();
         all.set_item("protocols", protocols)?;
         all.set_item("max_position_bits", identity.max_position_bits)?;
         all.set_item("system_hz", identity.system_hz)?;

@@ -6,7 +6,9 @@ use crate::link::Link;
 use crate::map::{field, word};
 use crate::result::{Moment, MOMENT_WORDS};
 use embedded_hal::delay::DelayNs;
-use endat_regs::{Part, BLOCK_STRIDE, CHANNELS_MAX, FEATURES_BITS, ID, RESULT_BASE, VERSION};
+use endat_regs::{
+    Part, Protocol, Protocols, BLOCK_STRIDE, CHANNELS_MAX, FEATURES_BITS, ID, RESULT_BASE, VERSION,
+};
 
 /// How often a moment is tried word by word before the results are held.
 const MOMENT_TRIES: usize = 3;
@@ -68,7 +70,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             system_hz: link.read(word!(CARD.system_hz))?,
             channels: field!(CARD.capabilities.channels).of(capabilities) as usize,
             max_position_bits: field!(CARD.capabilities.max_position_bits).of(capabilities),
-            t_format_channels: field!(CARD.protocols.t_format).of(protocols),
+            protocols: Protocols::of_word(protocols),
             features: field!(CARD.capabilities.features).of(capabilities)
                 | field!(CARD.protocols.features).of(protocols) << FEATURES_BITS,
         };
@@ -280,18 +282,18 @@ impl<L: Link, D: DelayNs> Card<L, D> {
 
     /// An EnDat channel of this card.
     pub(crate) fn needs_endat(&self, channel: usize) -> Result<(), Error<L::Error>> {
-        self.needs_protocol(channel, false)
+        self.needs_protocol(channel, Protocol::Endat)
     }
 
-    /// A T-format channel of this card.
-    pub(crate) fn needs_t_format(&self, channel: usize) -> Result<(), Error<L::Error>> {
-        self.needs_protocol(channel, true)
-    }
-
-    fn needs_protocol(&self, channel: usize, t_format: bool) -> Result<(), Error<L::Error>> {
+    /// A channel of this card that speaks this protocol.
+    pub(crate) fn needs_protocol(
+        &self,
+        channel: usize,
+        protocol: Protocol,
+    ) -> Result<(), Error<L::Error>> {
         match channel < self.facts.channels {
             false => Err(Error::Argument),
-            true if self.facts.is_t_format(channel) != t_format => Err(Error::Protocol),
+            true if self.facts.protocol(channel) != protocol => Err(Error::Protocol),
             true => Ok(()),
         }
     }

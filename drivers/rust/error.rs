@@ -90,7 +90,7 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 part.named().name
             ),
             Self::Protocol => f.write_str(
-                "the channel speaks the other protocol, EnDat or T-format, which does not have this: Card::facts() tells which",
+                "the channel speaks another protocol, which does not have this: Card::facts() tells which",
             ),
             Self::Timeout => {
                 f.write_str("not ended in time: is a trigger enabled, is the encoder plugged in?")

@@ -1,6 +1,6 @@
 //! What a card says of itself.
 
-use endat_regs::{Part, CHANNELS_MAX};
+use endat_regs::{Part, Protocol, Protocols, CHANNELS_MAX};
 
 /// What a card says of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,8 +15,8 @@ pub struct Facts {
     pub channels: usize,
     /// Widest position.
     pub max_position_bits: u32,
-    /// Bit n: channel n speaks T-format.
-    pub t_format_channels: u32,
+    /// What each channel speaks.
+    pub protocols: Protocols,
     /// Parts 0 to 15, then 16 to 31.
     pub(crate) features: u32,
 }
@@ -27,8 +27,11 @@ impl Facts {
         self.features >> part as u32 & 1 == 1
     }
 
-    /// Whether a channel speaks T-format.
-    pub const fn is_t_format(&self, channel: usize) -> bool {
-        channel < CHANNELS_MAX && self.t_format_channels >> channel & 1 == 1
+    /// What a channel speaks; EnDat if there is no such channel.
+    pub const fn protocol(&self, channel: usize) -> Protocol {
+        match channel < CHANNELS_MAX {
+            true => self.protocols.of(channel),
+            false => Protocol::Endat,
+        }
     }
 }

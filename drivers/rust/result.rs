@@ -4,7 +4,7 @@ use crate::facts::Facts;
 use crate::frame::crc5;
 use crate::map::field;
 use endat_regs::causes::{self, endat};
-use endat_regs::{Field, Part, BLOCK_STRIDE, CHANNELS_MAX, RESULT};
+use endat_regs::{Field, Part, Protocol, Protocols, BLOCK_STRIDE, CHANNELS_MAX, RESULT};
 
 /// Words of a result, those of additional data included.
 pub const RESULT_WORDS: usize = RESULT.registers.len();
@@ -104,8 +104,8 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Takes the words of a result apart, of a channel that speaks one protocol or the other; those that are not there count as 0.
-    pub fn new(words: &[u32], is_t_format: bool) -> Self {
+    /// Takes the words of a result apart, of a channel that speaks this protocol; those that are not there count as 0.
+    pub fn new(words: &[u32], protocol: Protocol) -> Self {
         let word = |offset: usize| words.get(offset).copied().unwrap_or(0);
         let [status, low, high, timestamp, evidence, age, info_1, info_2] =
             core::array::from_fn(word);
@@ -123,7 +123,7 @@ impl Reading {
             age_us: field!(RESULT.age_recovery.age_us).of(age) as u16,
             delay_cycles: (delay_high << delay_low.width | delay_low.of(evidence)) as u16,
             recovery_cycles: field!(RESULT.age_recovery.recovery_cycles).of(age) as u16,
-            cause: causes::number(field!(RESULT.status.cause).of(status) as u8, is_t_format),
+            cause: causes::number(field!(RESULT.status.cause).of(status) as u8, protocol),
             valid: is(status, field!(RESULT.status.valid)),
             fresh: is(status, field!(RESULT.status.fresh)),
             stale: is(age, field!(RESULT.age_recovery.stale)),
@@ -199,18 +199,17 @@ fn fits(position: u64, high: u32) -> bool {
         || position >> width == 0 && crc5(covered) == field!(RESULT.position_high.crc).of(high)
 }
 
-/// The results in the words from the first one on; those between two results count for nothing. Bit n of `t_format_channels`: channel n
-/// speaks T-format.
+/// The results in the words from the first one on; those between two results count for nothing. `protocols`: what each
+/// channel speaks.
 pub fn readings(
     words: &[u32],
     has_infos: bool,
-    t_format_channels: u32,
+    protocols: Protocols,
 ) -> impl Iterator<Item = Reading> + '_ {
     let each = endat_regs::result_words(1, has_infos) as usize;
     let blocks = words.chunks(BLOCK_STRIDE.into()).enumerate();
     blocks.map(move |(channel, block)| {
-        let is_t_format = t_format_channels >> channel & 1 == 1;
-        Reading::new(&block[..each.min(block.len())], is_t_format)
+        Reading::new(&block[..each.min(block.len())], protocols.of(channel))
     })
 }
 
@@ -226,7 +225,7 @@ impl Moment {
     pub(crate) fn new(words: &[u32; MOMENT_WORDS], facts: &Facts) -> Self {
         let (channels, has_infos) = (facts.channels, facts.has(Part::Requests));
         let mut results = [Reading::default(); CHANNELS_MAX];
-        let read = readings(words, has_infos, facts.t_format_channels).take(channels);
+        let read = readings(words, has_infos, facts.protocols).take(channels);
         for (result, reading) in results.iter_mut().zip(read) {
             *result = reading.checked();
         }

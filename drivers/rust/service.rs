@@ -9,7 +9,7 @@ use embedded_hal::delay::DelayNs;
 use endat_regs::causes::endat;
 use endat_regs::protocol::ModeCommand;
 use endat_regs::service::word as at;
-use endat_regs::{Part, SERVICE};
+use endat_regs::{Part, Protocol, SERVICE};
 
 /// Pause between two looks at an initialisation, and at a request.
 const STATE_PAUSE_US: u32 = 500;
@@ -156,7 +156,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     pub fn set_alarm(&mut self, channel: usize, n: u32, m: u32) -> Result<(), Error<L::Error>> {
         self.needs_service(channel)?;
         let (field_n, field_m) = (field!(SERVICE.threshold.n), field!(SERVICE.threshold.m));
-        if !field_m.allows(m, false) || n > m {
+        if !field_m.allows(m, Protocol::Endat) || n > m {
             return Err(Error::Argument);
         }
         let word = field_n.put(0, n).and_then(|word| field_m.put(word, m));

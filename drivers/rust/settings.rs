@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::link::Link;
 use crate::map::{field, word};
 use embedded_hal::delay::DelayNs;
-use endat_regs::{Field, Part};
+use endat_regs::{Field, Part, Protocol};
 
 /// Fewest system clocks in an EnDat clock, where DATA is not sampled on both edges.
 const SINGLE_EDGE_PERIOD_MIN: u32 = 4;
@@ -55,10 +55,10 @@ pub(crate) fn put_at<const N: usize>(
     places: [Place; N],
     values: [u32; N],
     mut words: [u32; 3],
-    is_t_format: bool,
+    protocol: Protocol,
 ) -> Option<[u32; 3]> {
     for ((word, field), value) in places.into_iter().zip(values) {
-        if !field.allows(value, is_t_format) {
+        if !field.allows(value, protocol) {
             return None;
         }
         words[word] = field.put(words[word], value)?;
@@ -149,7 +149,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             return Err(Error::Argument);
         }
         let words = self.settings_words(channel)?;
-        let words = put_at(places(), settings.values(), words, false).ok_or(Error::Argument)?;
+        let words =
+            put_at(places(), settings.values(), words, Protocol::Endat).ok_or(Error::Argument)?;
         // A frame between two writes would run with half of the settings.
         self.without_triggers(|card| card.write_settings_words(channel, words))
     }
@@ -195,7 +196,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             ),
         ];
         let period = field!(CARD_CONFIG.trigger_period.value);
-        if period_cycles.is_some_and(|cycles| !period.allows(cycles, false)) {
+        if period_cycles.is_some_and(|cycles| !period.allows(cycles, Protocol::Endat)) {
             return Err(Error::Argument);
         }
         let address = word!(CARD_CONFIG.trigger_sources);

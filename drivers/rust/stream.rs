@@ -6,7 +6,7 @@ use crate::frame::{crc16, CRC16_START};
 use crate::link::Link;
 use crate::map::{field, word};
 use embedded_hal::delay::DelayNs;
-use endat_regs::{causes, Part, CHANNELS_MAX, WORD_BYTES};
+use endat_regs::{causes, Part, Protocols, CHANNELS_MAX, WORD_BYTES};
 
 /// Bytes before the samples, of a sample, of its additional data, and of the check sum.
 const HEAD_BYTES: usize = 8;
@@ -31,8 +31,8 @@ pub struct Stream {
     bytes: [u8; SET_BYTES + 1],
     /// How many.
     count: usize,
-    /// Bit n: channel n speaks T-format.
-    t_format_channels: u32,
+    /// What each channel speaks.
+    protocols: Protocols,
     /// Read, and not looked at.
     word: u32,
     /// Bytes of it.
@@ -81,11 +81,11 @@ impl Set {
 }
 
 impl Stream {
-    fn new(t_format_channels: u32) -> Self {
+    fn new(protocols: Protocols) -> Self {
         Self {
             bytes: [0; SET_BYTES + 1],
             count: 0,
-            t_format_channels,
+            protocols,
             word: 0,
             left: 0,
         }
@@ -105,7 +105,7 @@ impl Stream {
         match core::mem::take(&mut self.count) {
             // Nothing between two zeros.
             0 => None,
-            count => set_of(&mut self.bytes[..count], self.t_format_channels).transpose(),
+            count => set_of(&mut self.bytes[..count], self.protocols).transpose(),
         }
     }
 }
@@ -140,7 +140,7 @@ fn number(bytes: &[u8]) -> u64 {
 }
 
 /// The set in these bytes; none if it is of a type of later cards.
-fn set_of(bytes: &mut [u8], t_format_channels: u32) -> Result<Option<Set>, Damaged> {
+fn set_of(bytes: &mut [u8], protocols: Protocols) -> Result<Option<Set>, Damaged> {
     let length = decode(bytes).ok_or(Damaged)?;
     let bytes = &bytes[..length];
     let (body, crc) = bytes
@@ -172,12 +172,14 @@ fn set_of(bytes: &mut [u8], t_format_channels: u32) -> Result<Option<Set>, Damag
     };
     let own = samples.chunks_exact(each);
     for (channel, (sample, own)) in (first..).zip(set.samples.iter_mut().zip(own)) {
-        let is_t_format = t_format_channels >> channel & 1 == 1;
         let status = number(&own[6..8]) as u16;
         let word = u32::from(status) << STATUS_SHIFT;
         *sample = Sample {
             position: number(&own[..6]),
-            cause: causes::number(field!(RESULT.status.cause).of(word) as u8, is_t_format),
+            cause: causes::number(
+                field!(RESULT.status.cause).of(word) as u8,
+                protocols.of(channel.into()),
+            ),
             taken: status & TAKEN != 0,
             valid: field!(RESULT.status.valid).of(word) != 0,
             fresh: field!(RESULT.status.fresh).of(word) != 0,
@@ -197,7 +199,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.link.write(word!(CARD.stream_clear), clear)?;
         let collect = field!(CARD.stream_control.collect).mask();
         self.write_checked(control, if collects { collect } else { 0 })?;
-        Ok(Stream::new(self.facts().t_format_channels))
+        Ok(Stream::new(self.facts().protocols))
     }
 
     /// The next set; none if there is none yet, [`Error::Set`] for one that was damaged.

@@ -9,7 +9,7 @@ use crate::settings::{put_at, values_at, Place};
 use embedded_hal::delay::DelayNs;
 use endat_regs::causes;
 use endat_regs::t_format::{request, RESETS_IN_A_ROW};
-use endat_regs::Field;
+use endat_regs::{Field, Protocol};
 
 /// An exchange is over after so long, whatever comes: the longest pauses that can be set, and all fields at the slowest bit.
 const EXCHANGE_US: u32 = 2_000;
@@ -25,7 +25,7 @@ pub struct Reply {
     pub data: u8,
 }
 
-/// Fields of the last reply, of a trigger or of a request.
+/// Fields of the last reply, of a trigger or of a request, and which parts of the position there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fields {
     /// Status field (SF); 0 if none came.
@@ -36,6 +36,10 @@ pub struct Fields {
     pub alarm: u8,
     /// CRC as received.
     pub crc: u8,
+    /// A single-turn position has come since reset: bits 23..0 of a position.
+    pub has_single_turn: bool,
+    /// A multi-turn position has come since reset: bits 47..24.
+    pub has_multi_turn: bool,
 }
 
 /// Settings of a T-format channel, as the register map explains them.
@@ -103,8 +107,8 @@ const OF_TRIGGERS: [u8; 4] = [
 ];
 /// These come with a good reply.
 const ALARMS: [u8; 2] = [
-    causes::number(causes::t_format::COUNTING_ERROR as u8, true),
-    causes::number(causes::t_format::MULTI_TURN_ALARM as u8, true),
+    causes::number(causes::t_format::COUNTING_ERROR as u8, Protocol::TFormat),
+    causes::number(causes::t_format::MULTI_TURN_ALARM as u8, Protocol::TFormat),
 ];
 const BUSY: &Field = field!(T_FORMAT.answer.busy);
 const DONE: &Field = field!(T_FORMAT.answer.done);
@@ -135,7 +139,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         data: u8,
         limit_ms: u32,
     ) -> Result<Reply, Error<L::Error>> {
-        self.needs_t_format(channel)?;
+        self.needs_protocol(channel, Protocol::TFormat)?;
         self.exchange_within(channel, [id, address, data], &mut Wait::of_ms(limit_ms))
     }
 
@@ -161,7 +165,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         loop {
             let answer = self.exchange_once(channel, word)?;
             let cause = field!(T_FORMAT.answer.cause).of(answer) as u8;
-            let cause = causes::number(cause, true);
+            let cause = causes::number(cause, Protocol::TFormat);
             if cause != 0 && !ALARMS.contains(&cause) {
                 return Err(Error::Exchange { cause });
             }
@@ -212,7 +216,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         request: [u8; 3],
         wait: &mut Wait,
     ) -> Result<u8, Error<L::Error>> {
-        let busy = causes::number(causes::t_format::EEPROM_BUSY as u8, true);
+        let busy = causes::number(causes::t_format::EEPROM_BUSY as u8, Protocol::TFormat);
         let mut is_in_time = true;
         loop {
             match self.exchange_within(channel, request, wait) {
@@ -232,7 +236,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         address: u8,
         limit_ms: u32,
     ) -> Result<u8, Error<L::Error>> {
-        self.needs_t_format(channel)?;
+        self.needs_protocol(channel, Protocol::TFormat)?;
         let request = [request::READ_EEPROM, address, 0];
         self.eeprom(channel, request, &mut Wait::of_ms(limit_ms))
     }
@@ -246,7 +250,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         data: u8,
         limit_ms: u32,
     ) -> Result<(), Error<L::Error>> {
-        self.needs_t_format(channel)?;
+        self.needs_protocol(channel, Protocol::TFormat)?;
         let mut wait = Wait::of_ms(limit_ms);
         self.eeprom(channel, [request::WRITE_EEPROM, address, data], &mut wait)?;
         match self.eeprom(channel, [request::READ_EEPROM, address, 0], &mut wait)? {
@@ -264,7 +268,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         id: u8,
         limit_ms: u32,
     ) -> Result<(), Error<L::Error>> {
-        self.needs_t_format(channel)?;
+        self.needs_protocol(channel, Protocol::TFormat)?;
         if !RESETS.contains(&id) {
             return Err(Error::Argument);
         }
@@ -279,15 +283,18 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         })
     }
 
-    /// Fields of the last reply.
+    /// Fields of the last reply, and which parts of the position there are.
     pub fn read_fields(&mut self, channel: usize) -> Result<Fields, Error<L::Error>> {
-        self.needs_t_format(channel)?;
+        self.needs_protocol(channel, Protocol::TFormat)?;
         let word = self.link.read(word!(T_FORMAT.fields, channel))?;
+        let parts = self.link.read(word!(T_FORMAT.parts, channel))?;
         Ok(Fields {
             status: field!(T_FORMAT.fields.status).of(word) as u8,
             encoder_id: field!(T_FORMAT.fields.encoder_id).of(word) as u8,
             alarm: field!(T_FORMAT.fields.alarm).of(word) as u8,
             crc: field!(T_FORMAT.fields.crc).of(word) as u8,
+            has_single_turn: field!(T_FORMAT.parts.single_valid).of(parts) != 0,
+            has_multi_turn: field!(T_FORMAT.parts.multi_valid).of(parts) != 0,
         })
     }
 
@@ -296,7 +303,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         &mut self,
         channel: usize,
     ) -> Result<TFormatSettings, Error<L::Error>> {
-        self.needs_t_format(channel)?;
+        self.needs_protocol(channel, Protocol::TFormat)?;
         Ok(TFormatSettings::of(self.settings_words(channel)?))
     }
 
@@ -307,7 +314,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         channel: usize,
         settings: &TFormatSettings,
     ) -> Result<(), Error<L::Error>> {
-        self.needs_t_format(channel)?;
+        self.needs_protocol(channel, Protocol::TFormat)?;
         let is_request = OF_TRIGGERS
             .iter()
             .any(|id| u32::from(*id) == settings.request_id);
@@ -317,7 +324,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             return Err(Error::Argument);
         }
         let words = self.settings_words(channel)?;
-        let words = put_at(places(), settings.values(), words, true).ok_or(Error::Argument)?;
+        let words =
+            put_at(places(), settings.values(), words, Protocol::TFormat).ok_or(Error::Argument)?;
         self.without_triggers(|card| card.write_settings_words(channel, words))
     }
 }

@@ -31,6 +31,7 @@ use endat_hdl::t_format::{
     dsp::{AsyncDsp, TFormatStart},
     port::TFormatPort,
 };
+use endat_regs::Protocol;
 use rtl_design::elaborate::{block_name, elaborate, Design};
 use rtl_design::verilog::file_name;
 use rust_hdl::prelude::Block;
@@ -248,7 +249,7 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "set_channel",
             "a channel's part of it",
-            SetChannel::new(0, true, false, SetParts::default()),
+            SetChannel::new(0, Protocol::Endat, false, SetParts::default()),
         )?,
         Subject::new(
             "direct_output",

@@ -13,7 +13,7 @@ use crate::config::Project;
 use crate::error::GenError;
 use endat_hdl::card::direct::CROP_CYCLES;
 use endat_hdl::config::CHANNELS;
-use endat_hdl::config::{filter_longest, ChannelConfig, ChannelRequest};
+use endat_hdl::config::{filter_longest, ChannelConfig, ChannelSpec};
 use endat_hdl::endat::timing::{
     PERIOD_CYCLES_MIN, PERIOD_CYCLES_MIN_DOUBLE, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
@@ -69,11 +69,11 @@ fn longest(project: &Project, conditions: Conditions) -> Result<String, GenError
 }
 
 /// The project with other requests of its channels.
-fn changed(project: &Project, change: impl Fn(&mut ChannelRequest)) -> Result<Project, GenError> {
+fn changed(project: &Project, change: impl Fn(&mut ChannelSpec)) -> Result<Project, GenError> {
     let mut project = project.clone();
     let (system_hz, double_edge) = (project.card.system_hz, project.card.line.double_edge);
     for (index, channel) in project.card.channels.iter_mut().enumerate() {
-        let mut request = channel.request.clone();
+        let mut request = channel.spec.clone();
         change(&mut request);
         let resolved = ChannelConfig::resolve(&request, system_hz, double_edge, index);
         *channel = resolved.map_err(|problems| fault(&format!("{problems:?}")))?;
@@ -82,7 +82,7 @@ fn changed(project: &Project, change: impl Fn(&mut ChannelRequest)) -> Result<Pr
 }
 
 /// Another EnDat clock, with the first low phase and the start window that go with it.
-fn at_clock(request: &mut ChannelRequest, clock_hz: u64) {
+fn at_clock(request: &mut ChannelSpec, clock_hz: u64) {
     request.clock_hz = clock_hz;
     request.tst_ns = if clock_hz >= TST_FROM_HZ {
         TST_USUAL_NS

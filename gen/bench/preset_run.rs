@@ -69,7 +69,7 @@ pub fn run(project: &Project, conditions: Conditions) -> Result<Vec<ChannelRun>,
         let channel = &card.channels[n];
         let mut encoder = encoders::turning(channel, n);
         encoder.tcal = 5 * US;
-        let is_short = channel.command.has_f2() && channel.request.clock_hz > 1_000_000;
+        let is_short = channel.command.has_f2() && channel.spec.clock_hz > 1_000_000;
         let tm = if is_short {
             conditions.short_tm
         } else {

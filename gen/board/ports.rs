@@ -2,6 +2,7 @@
 
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CHANNELS;
+use endat_regs::{Protocol, Protocols};
 use std::collections::BTreeSet;
 
 /// What a port of the top level is for; decides its constraints.
@@ -104,17 +105,18 @@ pub struct Assignment {
 }
 
 impl Assignment {
-    /// What it is, in words; `t_format` are the channels that speak it.
-    pub fn meaning(&self, t_format: &[usize]) -> String {
+    /// What it is, in words, on a card whose channels speak these.
+    pub fn meaning(&self, protocols: Protocols) -> String {
         let channel: String = self.signal.chars().filter(char::is_ascii_digit).collect();
-        let is_t_format = channel.parse().is_ok_and(|n| t_format.contains(&n));
+        let spoken = channel.parse().map_or(Protocol::Endat, |n| protocols.of(n));
         match (self.kind, self.signal.as_str()) {
             (Kind::Oscillator, _) => "oscillator of the board".into(),
             (Kind::Transceiver, s) if s.ends_with("_oe") => {
                 format!("driver enable of the DATA transceiver, channel {channel}")
             }
-            (Kind::Transceiver, s) if s.contains("clk") && is_t_format => {
-                format!("stays HIGH: channel {channel} speaks T-format, which has no clock")
+            (Kind::Transceiver, s) if s.contains("clk") && !spoken.row().has_clock => {
+                let name = spoken.name();
+                format!("stays HIGH: channel {channel} speaks {name}, which has no clock")
             }
             (Kind::Transceiver, s) if s.contains("clk") => {
                 format!("EnDat CLOCK to its driver, channel {channel}; idles high")

@@ -58,7 +58,7 @@ pub fn page() -> Result<Outcome, GenError> {
     );
     for board in all()? {
         let card = shipped_card(&board)?.card;
-        let clock_hz = card.channels.first().map_or(0, |c| c.request.clock_hz);
+        let clock_hz = card.channels.first().map_or(0, |c| c.spec.clock_hz);
         let family = &board.family;
         let open = family.build.as_ref().map(|_| "open tools");
         let vendor = family.vendor.as_ref().map(|vendor| vendor.tool.as_str());

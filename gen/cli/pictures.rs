@@ -4,7 +4,7 @@ use crate::artifact::{self, Artifact};
 use crate::error::{shown, GenError};
 use endat_sim::bench::Bench;
 use endat_sim::diagram::{frame_svg, is_drawing, overview_svg};
-use endat_sim::wave::{is_layout, is_vcd, write_t_format_wires, write_wires, Wave};
+use endat_sim::wave::{is_layout, is_vcd, write_line, write_wires, Wave};
 use rtl_design::engine::Compiled;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -129,9 +129,10 @@ pub fn draw(
 
 /// The wires of the first link, of whichever protocol.
 fn wires(bench: &Bench<Compiled>, out: &mut Vec<u8>) -> std::io::Result<()> {
-    match bench.link_count() {
-        0 => write_t_format_wires(bench.t_format(0), bench.now(), out),
-        _ => write_wires(bench.link(0), out),
+    let other = bench.others().next();
+    match other.filter(|_| bench.link_count() == 0) {
+        Some(other) => write_line(other, bench.now(), out),
+        None => write_wires(bench.link(0), out),
     }
 }
 

@@ -7,6 +7,7 @@ use clap::Args;
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::endat::channel::{Channel, FixedTimes};
 use endat_hdl::endat::service::program::ServiceTimes;
+use endat_regs::Protocol;
 use endat_sim::bench::Bench;
 use endat_sim::scenario::{
     self, t_format, t_format::TFormatReport, ChannelReport, FrameReport, Report, RunOptions,
@@ -141,7 +142,7 @@ fn run_t_format(arguments: &SimArgs) -> Result<Outcome, GenError> {
             t_format::NAME
         )));
     }
-    let mut block = EncoderPort::t_format(false);
+    let mut block = EncoderPort::speaking(Protocol::TFormat, false);
     block.connect_all();
     let design = elaborate(&block, "encoder_port").map_err(|e| fault(&e))?;
     let engine = Compiled::new(&design).map_err(|e| fault(&e))?;

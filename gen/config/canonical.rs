@@ -4,6 +4,7 @@
 
 use super::words::start_name;
 use crate::board::{Assignment, Board};
+use crate::protocols::other;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::*;
 use sha2::{Digest, Sha256};
@@ -108,7 +109,7 @@ pub fn of_card(
     }
     if card.own_triggers() {
         for (n, c) in channels.iter().enumerate() {
-            let own = c.request.trigger.unwrap_or_default();
+            let own = c.spec.trigger.unwrap_or_default();
             let OwnTrigger {
                 enabled,
                 divider,
@@ -223,21 +224,12 @@ fn of_channel(channel: &ChannelConfig, system_hz: u64) -> Vec<String> {
         recovery_limit_cycles,
         ready_low_cycles,
         abort_us,
-        t_format,
+        spoken,
         // What it comes to is in the cycles above, and in what is asked of the channel below.
-        request: _,
+        spec: _,
     } = channel;
-    if let Some(t_format) = t_format {
-        let TFormatRequest {
-            bit_hz: _,
-            request,
-            reply_gap_us,
-            field_gap_us,
-        } = t_format;
-        return vec![format!(
-            "t_format bit_cycles {period_cycles} filter_cycles {filter_cycles} request {} gaps {reply_gap_us} {field_gap_us}",
-            request.id()
-        )];
+    if let Some(other) = other(spoken.protocol()) {
+        return vec![other.canonical(channel)];
     }
     let mut lines = Vec::new();
     if *filter_half {

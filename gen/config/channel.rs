@@ -2,11 +2,14 @@
 
 use super::keys::*;
 use super::reader::{At, Table};
-use super::{protocol, trigger};
+use super::trigger;
 use crate::form::key::Key;
-use endat_hdl::config::{ChannelRequest, START_WINDOW_BITS};
+use crate::other_protocol::Other;
+use endat_hdl::config::{ChannelSpec, START_WINDOW_BITS};
 use endat_hdl::endat::timing::{cycles_at_most, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use endat_hdl::protocol::ModeCommand;
+use endat_hdl::protocols::Spoken;
+use endat_regs::Protocol;
 use std::collections::BTreeMap;
 
 /// Where a key of the resolved request was written: path and line.
@@ -15,11 +18,18 @@ pub type Places = BTreeMap<&'static str, (String, usize)>;
 /// A channel as read, with the places of its keys.
 pub struct Channel {
     /// What is asked for.
-    pub request: ChannelRequest,
+    pub spec: ChannelSpec,
     /// Name of the encoder.
     pub encoder: String,
     /// Where its keys stand.
     pub places: Places,
+}
+
+impl Channel {
+    /// Whether it speaks this protocol.
+    pub fn speaks(&self, protocol: Protocol) -> bool {
+        self.spec.spoken.protocol() == protocol
+    }
 }
 
 /// What was written for the keys of a line; `None` for what could not be read.
@@ -103,10 +113,10 @@ pub fn read_endat(
     let bits = POSITION_BITS.name;
     places.insert(bits, (table.name(bits), position.line));
     places.insert("channel", (table.name(bits), table.line));
-    let request = ChannelRequest {
+    let spec = ChannelSpec {
         clock_hz,
         calibration_hz: value(&CALIBRATION_HZ),
-        tst_ns: value(&TST_NS).unwrap_or(ChannelRequest::usual_tst_ns(clock_hz)),
+        tst_ns: value(&TST_NS).unwrap_or(ChannelSpec::usual_tst_ns(clock_hz)),
         command,
         position_bits: position.value,
         filter_ns: usual(&FILTER_NS),
@@ -116,44 +126,48 @@ pub fn read_endat(
         recovery_min_ns: usual(&RECOVERY_MIN),
         recovery_max_ns: usual(&RECOVERY_MAX),
         cable_m: usual(&CABLE),
-        t_format: None,
+        spoken: Spoken::Endat,
         trigger: own,
     };
     Some(Channel {
-        request,
+        spec,
         encoder,
         places,
     })
 }
 
-/// A channel that speaks T-format; the numbers of EnDat in it mean nothing.
-pub fn read_t_format(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Channel> {
+/// A channel that speaks another protocol; the numbers of EnDat in it mean nothing.
+pub fn read_other(
+    other: &dyn Other,
+    table: &Table<'_, '_>,
+    system_hz: Option<u64>,
+) -> Option<Channel> {
     let encoder = read_encoder(table)?;
-    let (wanted, filter_ns, lines) = protocol::read(table, system_hz);
+    let wanted = other.read(table, system_hz);
     let (own, divider_line) = trigger::read_own(table)?;
     let mut places = Places::new();
     places.insert(DIVIDER.name, (table.name(DIVIDER.name), divider_line));
-    for (key, line) in lines {
+    for (key, line) in wanted.lines {
         places.insert(key, (table.name(key), line));
     }
     places.insert("channel", (table.name(PROTOCOL.name), table.line));
-    let request = ChannelRequest {
-        clock_hz: wanted.bit_hz,
+    let spec = ChannelSpec {
+        clock_hz: wanted.rate_hz,
         calibration_hz: None,
         tst_ns: 0,
         command: ModeCommand::SendPosition,
         position_bits: 0,
-        filter_ns,
+        filter_ns: wanted.filter_ns,
         start_window_ns: 0,
         tcal_max_ns: 0,
         recovery_min_ns: RECOVERY_MIN_NS,
         recovery_max_ns: RECOVERY_MAX_NS,
         cable_m: 0,
-        t_format: Some(wanted),
+        spoken: wanted.spoken,
         trigger: own,
     };
     Some(Channel {
-        request,
+        spec,
         encoder,
         places,
     })

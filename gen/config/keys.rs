@@ -1,29 +1,18 @@
 //! Every key of a configuration, said once: `gen/form/key.rs` says who takes what from here. A new key is a row.
 
+pub use super::forms::*;
 use super::names::{NAME_MAX, NAME_PATTERN};
 use super::words::*;
 use crate::board;
 pub use crate::form::key::CHANNELS;
 use crate::form::key::{self, keys, Choice};
 pub use crate::form::key::{Key, Kind, Usual};
+use crate::t_format::keys as t_format_keys;
 use endat_hdl::card::stream::buffer::BUFFER_BYTES;
 use endat_hdl::config::{ERROR_TEST_MS, LIST};
 use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS};
-use endat_hdl::t_format::dsp::TFormatStart;
-use endat_hdl::t_format::protocol::{BIT_HZ, FAST_BIT_HZ};
-use endat_regs::MAP_BYTES;
+use endat_regs::{Protocol, MAP_BYTES};
 use std::ops::RangeInclusive;
-
-/// A form that has the key: a channel of a card that speaks EnDat; one that speaks T-format; a receiver and its channel.
-pub const ENDAT_FORM: u8 = 1;
-/// See [`ENDAT_FORM`].
-pub const T_FORMAT_FORM: u8 = 2;
-/// See [`ENDAT_FORM`].
-pub const RECEIVER_FORM: u8 = 4;
-/// Any card.
-pub const CARD_FORM: u8 = ENDAT_FORM | T_FORMAT_FORM;
-/// What speaks T-format.
-const SPEAKS_T_FORMAT: u8 = T_FORMAT_FORM | RECEIVER_FORM;
 
 /// The table that says for all channels what they do not say themselves.
 pub const COMMON: &str = "endat";
@@ -38,8 +27,6 @@ const ENCODER_MAX: usize = 40;
 const TCAL_MAX_NS: u64 = 5_000;
 /// Longest cable when none is given, in metres.
 const CABLE_M: u64 = 100;
-/// Input filter of T-format when none is given, in ns: a clock of the slower receiver.
-pub const T_FORMAT_FILTER_NS: u64 = 50;
 /// How many samples of a bit there may be.
 pub const SAMPLE_COUNTS: [u64; 2] = [1, 3];
 /// MRS codes that select additional data.
@@ -50,13 +37,18 @@ fn plain(numbers: impl IntoIterator<Item = u64>) -> Vec<Choice> {
     numbers.into_iter().map(choice).collect()
 }
 
+fn protocols() -> Vec<Choice> {
+    let choice = |p: &Protocol| Choice::new(p.row().word, p.row().means);
+    Protocol::ALL.iter().map(choice).collect()
+}
+
 fn sources() -> Vec<Choice> {
     SOURCES.map(|(word, means)| Choice::new(word, means)).into()
 }
 
 keys! {
-    /// All of them, in the order of the page.
-    KEYS;
+    /// Those of cards that speak EnDat, in the order of the page.
+    COMMON_KEYS;
     NAME = Key::text(TOP, "name", "folder, files and top module")
         .note("letters, digits and underscores, a letter first; no reserved word of Verilog, VHDL or C")
         .at_most(NAME_MAX).pattern(NAME_PATTERN).required("\"my_card\"");
@@ -97,8 +89,7 @@ keys! {
     ENCODER = Key::text(CHANNEL, "encoder", "the encoder's name, for reports").note("characters that can be seen").at_most(ENCODER_MAX);
     PROTOCOL = Key::text(CHANNEL, "protocol", "what the encoder speaks")
         .note("T-format channels have [keys of their own](#t-format) instead of `position_bits`, `command` and those of `[endat]`")
-        .one_of(|| vec![Choice::new(ENDAT, "EnDat 2.1 or 2.2"), Choice::new(T_FORMAT, "T-format")])
-        .usual(Usual::Word(ENDAT));
+        .one_of(protocols).usual(Usual::Word(Protocol::Endat.row().word));
     POSITION_BITS = Key::number(CHANNEL, "position_bits", "width of the position, from the encoder's data sheet")
         .of(ENDAT_FORM).required("29");
     COMMAND = Key::text(CHANNEL, "command", "mode command that a trigger sends").one_of(commands).of(ENDAT_FORM).required("\"111000\"");
@@ -109,17 +100,6 @@ keys! {
     DIVIDER = Key::number(CHANNEL, "divider", "the channel takes one of so many triggers").of(CARD_FORM).usual(Usual::Number(1));
     OWN_SOURCES = Key::texts(CHANNEL, "sources", "which triggers are for this channel")
         .note("as far as `trigger.sources` or the host enables them").one_of(sources).of(CARD_FORM).usual(Usual::All);
-
-    BIT_RATE = Key::number(CHANNEL, "bit_hz", "bit rate of T-format")
-        .one_of(|| plain([BIT_HZ, FAST_BIT_HZ])).of(SPEAKS_T_FORMAT).usual(Usual::Number(BIT_HZ));
-    REQUEST = Key::number(CHANNEL, "request", "what a trigger sends, of a receiver before the processor has written an ID")
-        .note("6 and 13 with receivers only").one_of(requests).of(SPEAKS_T_FORMAT).usual(Usual::Number(TFormatStart::USUAL.request_id as u64));
-    REPLY_GAP_US = Key::number(CHANNEL, "reply_gap_us", "longest pause before the reply")
-        .of(SPEAKS_T_FORMAT).usual(Usual::Number(TFormatStart::USUAL.reply_gap_us));
-    FIELD_GAP_US = Key::number(CHANNEL, "field_gap_us", "longest pause between two fields")
-        .of(SPEAKS_T_FORMAT).usual(Usual::Number(TFormatStart::USUAL.field_gap_us));
-    FILTER_CYCLES = Key::number(CHANNEL, "filter_cycles", "pulses up to this length are ignored, by a receiver")
-        .note("at 5 Mbit/s 0 or 1").of(RECEIVER_FORM).usual(Usual::Number(TFormatStart::USUAL.filter_cycles));
 
     SAMPLE_HZ = Key::number(&["trigger"], "sample_hz", "rate of the timer trigger")
         .note("from `system_hz` / 2^24 (6 at 100 MHz); with the timer up to what frame, cable and recovery time leave, `divider` times that")
@@ -192,6 +172,23 @@ keys! {
         .named(board::signals).of(CARD_FORM).usual(Usual::Follows("the board's usual place"));
 }
 
+/// All of them, in the order of the page: those that only another protocol has come last.
+pub static KEYS: &[&Key] = &{
+    let parts = [COMMON_KEYS, t_format_keys::KEYS];
+    let mut all: [&Key; COMMON_KEYS.len() + t_format_keys::KEYS.len()] = [&NAME; _];
+    let (mut next, mut part) = (0, 0);
+    while part < parts.len() {
+        let mut at = 0;
+        while at < parts[part].len() {
+            all[next] = parts[part][at];
+            next += 1;
+            at += 1;
+        }
+        part += 1;
+    }
+    all
+};
+
 /// The tables, in the order of the page, and what each is about.
 pub const TABLES: &[(&str, &str)] = &[
     ("clock", "clock of the core"),
@@ -233,9 +230,9 @@ pub fn tables(forms: u8) -> Vec<&'static str> {
     tables
 }
 
-/// The tables of the page: keys of cards, and those that only T-format has.
+/// The tables of the page: keys of cards, and those that EnDat does not have.
 pub fn page() -> [String; 2] {
-    let (others, t_format): (Vec<&Key>, Vec<&Key>) =
+    let (of_endat, others): (Vec<&Key>, Vec<&Key>) =
         KEYS.iter().partition(|key| key.forms & ENDAT_FORM != 0);
-    [others, t_format].map(key::page)
+    [of_endat, others].map(key::page)
 }

@@ -4,6 +4,7 @@ pub mod base;
 mod canonical;
 mod channel;
 mod device;
+pub mod forms;
 pub mod keys;
 mod line;
 mod names;
@@ -30,6 +31,7 @@ use crate::form::with_text;
 pub(crate) use crate::form::{asked, document, reader};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CardConfig;
+use endat_regs::Protocol;
 pub use receiver::Receiver;
 use std::path::Path;
 pub use words::{phase_name, start_name, RECEIVER_BUS};
@@ -94,14 +96,16 @@ pub struct Project {
 
 impl Project {
     /// What its channels speak, for titles.
-    pub fn protocols(&self) -> &'static str {
-        let t_format = self.card.t_format_channels().count_ones() as usize;
-        match t_format {
-            0 => "EnDat",
-            n if n == self.card.channels.len() => "T-format",
-            _ => "EnDat and T-format",
-        }
+    pub fn protocols(&self) -> String {
+        let spoken = Protocol::ALL.iter().copied();
+        names(spoken.filter(|p| self.card.speaks(*p)))
     }
+}
+
+/// Names of protocols, for titles.
+pub(crate) fn names(protocols: impl IntoIterator<Item = Protocol>) -> String {
+    let names: Vec<&str> = protocols.into_iter().map(|p| p.name()).collect();
+    names.join(" and ")
 }
 
 /// Text of the preset with this name.

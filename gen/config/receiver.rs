@@ -5,16 +5,15 @@ use super::channel::read_encoder;
 use super::check_name;
 use super::device::read_initial_values;
 use super::document::parse;
-use super::keys::{
-    tables, BUS, CARD_FORM, CHANNELS, FIELD_GAP_US, FILTER_CYCLES, NAME, PROTOCOL, RECEIVER_FORM,
-    REPLY_GAP_US,
-};
-use super::protocol::{read_bit_hz, read_request};
+use super::keys::{tables, BUS, CARD_FORM, CHANNELS, NAME, PROTOCOL, RECEIVER_FORM};
 use super::reader::{Source, Table};
-use super::words::{RECEIVER_BUS, T_FORMAT};
+use super::words::RECEIVER_BUS;
 use crate::form::key::Key;
+use crate::t_format::keys::{FIELD_GAP_US, FILTER_CYCLES, REPLY_GAP_US};
+use crate::t_format::reading::{read_bit_hz, read_request};
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::{BIT_HZ, FAST_BIT_HZ};
+use endat_regs::Protocol;
 use toml::de::DeTable;
 
 /// A checked configuration of a receiver.
@@ -112,7 +111,7 @@ fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
     let usual = TFormatStart::default();
     let protocol = table.string(&PROTOCOL);
     table.require_as(&PROTOCOL, "\"t_format\"");
-    if let Some(protocol) = protocol.filter(|p| p.value != T_FORMAT) {
+    if let Some(protocol) = protocol.filter(|p| p.value != Protocol::TFormat.row().word) {
         let text = "the bus \"dsp\" is that of a T-format receiver; use \"t_format\", or another host.bus for EnDat";
         let shown = format!("{:?}", protocol.value);
         table.complain(protocol.line, PROTOCOL.name, &shown, text);

@@ -1,6 +1,6 @@
 //! The way from a configuration file to a [`Project`].
 
-use super::channel::{check_overridden, read_endat, read_line_keys, read_t_format, Channel};
+use super::channel::{check_overridden, read_endat, read_line_keys, read_other, Channel};
 use super::device::read_initial_values;
 use super::document::parse;
 use super::keys;
@@ -10,8 +10,10 @@ use super::{
     base, canonical, check_name, line, outputs, protocol, safety, service, stream, trigger, Project,
 };
 use crate::board::{card_ports, Assignment, Board, MorePorts};
+use crate::protocols;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::*;
+use endat_regs::Protocol;
 use std::path::Path;
 use toml::de::DeTable;
 
@@ -125,17 +127,17 @@ impl<'s, 't> Written<'s, 't> {
         let line = line::read(&t.line, system_hz);
         let is_aligned = line.is_some_and(|parts| parts.alignment);
         let channel_tables = t.root.tables(keys::CHANNELS);
-        let read_channel = |table| match protocol::is_t_format(table)? {
-            true => read_t_format(table, system_hz),
-            false => read_endat(table, &defaults, system_hz, is_aligned),
+        let read_channel = |table| match protocols::other(protocol::read(table)?) {
+            Some(other) => read_other(other, table, system_hz),
+            None => read_endat(table, &defaults, system_hz, is_aligned),
         };
         let channels = channel_tables.as_ref();
         let channels: Option<Vec<Option<Channel>>> =
             channels.map(|tables| tables.iter().map(read_channel).collect());
         let read = channels.as_deref().unwrap_or_default();
         check_overridden(&t.endat, &defaults, read, system_hz);
-        // One that could not be read may be of either protocol.
-        let speaks = |c: &Option<Channel>| c.as_ref().is_none_or(|c| c.request.t_format.is_none());
+        // One that could not be read may be of any protocol.
+        let speaks = |c: &Option<Channel>| c.as_ref().is_none_or(|c| c.speaks(Protocol::Endat));
         let has_endat = channels.iter().flatten().any(speaks);
         let sample_limits = keys::SAMPLE_HZ.limits(system_hz);
         let sample = t.trigger.required_integer(&keys::SAMPLE_HZ, &sample_limits);
@@ -193,10 +195,9 @@ impl<'s, 't> Written<'s, 't> {
             let of_board = of_board.filter(|_| !self.has_board);
             refuse_unused(&t.root, bus, of_uart.chain(of_board));
         }
-        let is_t_format =
-            |c: &Option<Channel>| c.as_ref().is_some_and(|c| c.request.t_format.is_some());
+        let is_other = |c: &Option<Channel>| c.as_ref().is_some_and(|c| !c.speaks(Protocol::Endat));
         let channels = self.channels.as_ref().filter(|all| !all.is_empty());
-        if channels.is_some_and(|all| all.iter().all(is_t_format)) {
+        if channels.is_some_and(|all| all.iter().all(is_other)) {
             refuse_endat(&t.root, &t.service, &t.line);
         }
         if self.bus == Some(HostBus::Bare) {
@@ -237,7 +238,7 @@ impl<'s, 't> Written<'s, 't> {
         let has_read_hz = t.link.has(keys::READ_HZ.name);
         let usual_read_hz =
             value(&self.sample).filter(|hz| !has_read_hz && read_limits.contains(*hz));
-        let request = |c: &Option<Channel>| c.as_ref().map(|c| c.request.clone());
+        let request = |c: &Option<Channel>| c.as_ref().map(|c| c.spec.clone());
         CardDraft {
             system_hz: value(&self.system),
             channels: self

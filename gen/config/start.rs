@@ -50,6 +50,13 @@ pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, Gen
             edits.extend(value(table, key).map(|span| (span, grouped(hz))));
         }
     }
+    // A slower link than the preset's, where the board's chip is slower.
+    if let Some(span) = value("link", "baud") {
+        let asked = text.get(span.clone()).and_then(number);
+        if asked.is_some_and(|baud| baud > board.uart_baud_max) {
+            edits.push((span, grouped(board.uart_baud_max)));
+        }
+    }
     edits.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
     let mut text = text.to_owned();
     for (span, new) in edits {
@@ -80,6 +87,11 @@ fn with_one_channel(text: &str) -> String {
     lines.map(|line| format!("{line}\n")).collect()
 }
 
+/// The number that a text with underscores is.
+fn number(text: &str) -> Option<u64> {
+    text.replace('_', "").parse().ok()
+}
+
 /// A number as people write it: 3_125_000.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
@@ -107,5 +119,23 @@ mod tests {
             assert!(text.contains(&format!("name = {name:?}")), "{text}");
         }
         assert_eq!([grouped(7), grouped(3_125_000)], ["7", "3_125_000"]);
+    }
+
+    /// Catches a preset that asks for more than the chip behind the connector of the host can do.
+    #[test]
+    fn the_uart_of_a_preset_is_no_faster_than_that_of_the_board() {
+        let slow = Board {
+            uart_baud_max: 921_600,
+            ..Board::named("papilio_pro").unwrap()
+        };
+        let slow = Board {
+            name: "slow".into(),
+            ..slow
+        };
+        let text = preset_for("--preset", DEFAULT_PRESET, &slow).unwrap();
+        assert!(text.contains("\nbaud = 921_600"), "{text}");
+        let own = Board::named("papilio_pro").unwrap();
+        let text = preset_for("--preset", DEFAULT_PRESET, &own).unwrap();
+        assert!(!text.contains("921_600"), "{text}");
     }
 }

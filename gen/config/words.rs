@@ -4,15 +4,10 @@ use crate::form::key::Choice;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::{PhaseSource, StreamStart};
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::t_format::protocol::Request;
 use endat_regs::Part;
 
 /// Bus that makes a configuration one of a receiver.
 pub const RECEIVER_BUS: &str = "dsp";
-/// Word of the key `protocol` for T-format.
-pub const T_FORMAT: &str = "t_format";
-/// Word of the key `protocol` for EnDat, which may be left out.
-pub const ENDAT: &str = "endat";
 /// What a trigger comes from.
 pub const SOURCES: [(&str, &str); 3] = [
     ("pin", "rising edge of the trigger pin"),
@@ -122,22 +117,6 @@ pub fn commands() -> Vec<Choice> {
     };
     let choice = |c: ModeCommand| Choice::new(format_args!("{:06b}", c.code()), meaning(c));
     ModeCommand::POSITION.map(choice).into()
-}
-
-/// Requests of T-format.
-pub fn requests() -> Vec<Choice> {
-    let meaning = |request| match request {
-        Request::SingleTurn => "single-turn position",
-        Request::MultiTurn => "multi-turn position",
-        Request::EncoderId => "kind of encoder",
-        Request::Everything => "both positions, kind and alarms",
-        Request::WriteEeprom => "writes a byte of the EEPROM",
-        Request::ClearErrors => "clears errors; takes ten in a row",
-        Request::ClearSingleTurn => "makes the present angle zero; takes ten in a row",
-        Request::ClearMultiTurn => "clears turns and errors; takes ten in a row",
-        Request::ReadEeprom => "reads a byte of the EEPROM",
-    };
-    Request::ALL.map(|r| Choice::new(r.id(), meaning(r))).into()
 }
 
 #[cfg(test)]

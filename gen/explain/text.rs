@@ -1,20 +1,9 @@
 //! The report as text.
 
-use super::{AnyChannelReport, ChannelReport, Rate, Report};
+use super::rate::rate;
+use super::{AnyChannelReport, ChannelReport, Report};
 use endat_sim::decimal;
 use std::fmt;
-
-/// A rate, and what was asked for if it is another.
-pub(super) fn rate(rate: &Rate, unit: &str) -> String {
-    let actual = decimal(rate.actual_hz, 1);
-    match rate.deviation_ppm == 0.0 {
-        true => format!("{actual} {unit}, as asked"),
-        false => format!(
-            "{actual} {unit}, asked {}, {:+.0} ppm",
-            rate.requested_hz, rate.deviation_ppm
-        ),
-    }
-}
 
 /// One row of the channel table: heading, and the cell of a channel.
 type Row = (&'static str, fn(&ChannelReport) -> String);
@@ -160,10 +149,9 @@ impl fmt::Display for Report {
                 line(f, head, cells, width)?;
             }
         }
-        for (index, channel) in self.channels.iter().enumerate() {
-            if let AnyChannelReport::TFormat(channel) = channel {
-                writeln!(f)?;
-                channel.write(f, index)?;
+        for channel in &self.channels {
+            if let AnyChannelReport::Other(channel) = channel {
+                write!(f, "\n{}", channel.text)?;
             }
         }
         writeln!(f)?;

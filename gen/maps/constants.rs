@@ -206,12 +206,14 @@ fn fields(items: &mut Vec<Item>, entry: &MapRegister, register: &str) {
         items.push(constant(format!("{name}_SHIFT"), field.lsb, Form::Decimal));
         items.push(constant(format!("{name}_MASK"), field.mask(), CONTENT));
         values(items, &name, field.values);
-        if let Some(special) = entry.t_format_values(field) {
+        for (protocol, special) in entry.values_elsewhere(field) {
             items.push(Item::Comment(format!(
-                "{}: on a T-format channel",
-                field.name
+                "{}: on a {} channel",
+                field.name,
+                protocol.name()
             )));
-            values(items, &format!("{name}_T_FORMAT"), special);
+            let suffix = protocol.row().word.to_ascii_uppercase();
+            values(items, &format!("{name}_{suffix}"), special);
         }
     }
 }

@@ -3,9 +3,12 @@
 
 use super::{header, Map, MapBlock, MapRegister};
 use crate::artifact::Artifact;
+use crate::config::names;
 use endat_regs::service::{request_state, NAME_PLATE, STEPS};
 use endat_regs::t_format::RESETS_IN_A_ROW;
-use endat_regs::{causes, Named, BLOCKS, CHANNELS_MAX, ID, INFO_FIRST, MAP_BYTES, VERSION};
+use endat_regs::{
+    causes, Named, Protocol, BLOCKS, CHANNELS_MAX, ID, INFO_FIRST, MAP_BYTES, VERSION,
+};
 use std::fmt::Write;
 
 /// What all macros begin with; a card's own header has the card's name there.
@@ -26,7 +29,7 @@ fn all_blocks() -> Vec<MapBlock> {
     let register = |register| MapRegister {
         register,
         resets: vec![],
-        speaks_t_format: true,
+        spoken: Protocol::ALL.to_vec(),
     };
     BLOCKS
         .iter()
@@ -47,7 +50,7 @@ fn map() -> String {
         name: PREFIX.to_ascii_lowercase(),
         origin: ORIGIN.into(),
         version: VERSION,
-        protocols: "EnDat and T-format",
+        protocols: names(Protocol::ALL.iter().copied()),
         channels: CHANNELS_MAX as u32,
         base_address: 0,
         blocks: all_blocks(),
@@ -118,13 +121,19 @@ fn write_limits(text: &mut String, block: &MapBlock) {
         for field in entry.register.fields {
             let name = [block.block.name, entry.register.name, field.name].join("_");
             let name = name.to_ascii_uppercase();
-            let protocols = [
-                (field.limits.endat, "", ""),
-                (field.limits.t_format, " on a T-format channel", "_T_FORMAT"),
-            ];
-            for (ranges, channel, suffix) in protocols {
-                let [(least, greatest)] = ranges else {
+            for protocol in Protocol::ALL {
+                let is_own = *protocol == Protocol::Endat || protocol.own(field).is_some();
+                let all = (0, field.mask() >> field.lsb);
+                let is_own = is_own && field.ranges(*protocol) != [all];
+                let ([(least, greatest)], true) = (field.ranges(*protocol), is_own) else {
                     continue;
+                };
+                let (channel, suffix) = match protocol {
+                    Protocol::Endat => Default::default(),
+                    other => (
+                        format!(" on a {} channel", other.name()),
+                        format!("_{}", other.row().word.to_ascii_uppercase()),
+                    ),
                 };
                 // Writing to a String cannot fail.
                 let _ = writeln!(
@@ -165,8 +174,8 @@ fn meanings(named: &[Named]) -> Vec<(u32, String)> {
 
 /// The function that makes one list of the causes of both protocols.
 fn write_cause_of(text: &mut String) {
-    let number = |code: &Named| causes::number(code.number as u8, true);
-    let numbers: Vec<String> = (causes::T_FORMAT.iter())
+    let number = |code: &Named| causes::number(code.number as u8, Protocol::TFormat);
+    let numbers: Vec<String> = (Protocol::TFormat.row().coded.iter())
         .map(|code| format!("    ENDAT_CAUSE_{},", named(number(code))))
         .collect();
     let _ = write!(

@@ -34,11 +34,12 @@ fn write_long_lists(text: &mut String, block: &MapBlock) {
     for entry in &block.registers {
         for field in entry.register.fields {
             let own = (field.values, format!("`{}`", field.name));
-            let others = entry.t_format_values(field).map(|values| {
-                let name = format!("`{}` on a T-format channel", field.name);
+            let others = entry.values_elsewhere(field).into_iter();
+            let others = others.map(|(protocol, values)| {
+                let name = format!("`{}` on a {} channel", field.name, protocol.name());
                 (values, name)
             });
-            for (values, name) in [Some(own), others].into_iter().flatten() {
+            for (values, name) in std::iter::once(own).chain(others) {
                 let Some(codes) = long_list(values) else {
                     continue;
                 };
@@ -118,7 +119,7 @@ fn meaning(entry: &MapRegister, field: &Field) -> String {
     if long_list(field.values).is_some() {
         return format!("{}: see the table below", field.meaning);
     }
-    let others = entry.in_t_format(field);
+    let others = entry.elsewhere(field);
     match listed(field.values).as_str() {
         "" => format!("{}{others}", field.meaning),
         list => format!("{}: {list}{others}", field.meaning),

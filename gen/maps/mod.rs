@@ -27,7 +27,7 @@ use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use endat_hdl::regs;
-use endat_regs::{Block, Field, Named, Register, Values};
+use endat_regs::{Block, Field, Named, Protocol, Register, Values};
 
 pub use endat_regs::WORD_BYTES;
 
@@ -41,7 +41,7 @@ pub struct Map {
     /// Major, minor and patch version of the register map.
     pub version: [u8; 3],
     /// What its channels speak.
-    pub protocols: &'static str,
+    pub protocols: String,
     /// Encoder ports.
     pub channels: u32,
     /// Where it begins in the address space of a system, in bytes.
@@ -68,14 +68,16 @@ pub struct MapRegister {
     pub register: &'static Register,
     /// Value after reset in each copy of the block; empty for RAM, which a reset leaves alone.
     pub resets: Vec<u32>,
-    /// Some of the card's channels speak T-format.
-    pub speaks_t_format: bool,
+    /// What the card's channels speak.
+    pub spoken: Vec<Protocol>,
 }
 
 impl Map {
     /// The map of a project.
     pub fn new(project: &Project) -> Self {
         let config = &project.card;
+        let spoken = Protocol::ALL.iter().copied();
+        let spoken: Vec<Protocol> = spoken.filter(|p| config.speaks(*p)).collect();
         let map_block = |block: &'static Block| {
             let copies = if block.per_channel {
                 config.channels.len()
@@ -88,7 +90,7 @@ impl Map {
                     .filter(|_| !block.is_ram)
                     .map(|channel| regs::start(block, register, config, channel))
                     .collect(),
-                speaks_t_format: config.t_format_channels() != 0,
+                spoken: spoken.clone(),
             });
             MapBlock {
                 block,
@@ -169,17 +171,19 @@ impl MapRegister {
         self.resets.first().map_or(0, |r| r & self.reset_mask())
     }
 
-    /// What a field's numbers or bits stand for on a T-format channel, if that is something else and there is one.
-    pub fn t_format_values(&self, field: &Field) -> Option<Values> {
-        field.t_format_values.filter(|_| self.speaks_t_format)
+    /// What a field's numbers or bits stand for on a channel that speaks another protocol than EnDat, if that is something else.
+    pub fn values_elsewhere(&self, field: &Field) -> Vec<(Protocol, Values)> {
+        let all = field.values_elsewhere();
+        all.filter(|(p, _)| self.spoken.contains(p)).collect()
     }
 
     /// The same in words, behind a description.
-    pub fn in_t_format(&self, field: &Field) -> String {
-        let values = self.t_format_values(field);
-        values.map_or_else(String::new, |values| {
-            format!("; on a T-format channel {}", listed(values))
-        })
+    pub fn elsewhere(&self, field: &Field) -> String {
+        let all = self.values_elsewhere(field).into_iter();
+        let shown = |(protocol, values): (Protocol, Values)| {
+            format!("; on a {} channel {}", protocol.name(), listed(values))
+        };
+        all.map(shown).collect()
     }
 
     /// Values of a field after reset, one for each copy, or one if they are equal; empty for RAM.

@@ -107,7 +107,7 @@ fn write_field(text: &mut String, entry: &MapRegister, field: &Field) {
     if matches!(field.values, Values::Bits(_)) {
         meaning = format!("{meaning}: {}", listed(field.values));
     }
-    meaning += &entry.in_t_format(field);
+    meaning += &entry.elsewhere(field);
     let mut reset = String::new();
     match &entry.field_resets(field)[..] {
         [] => {}

@@ -143,7 +143,7 @@ fn field(entry: &MapRegister, field: &TableField) -> Result<Field, SvdError> {
         Values::Codes(codes) => values.push(enumerated(field.name, codes)?),
         Values::Bits(_) => description = format!("{description}: {}", listed(field.values)),
     }
-    description += &entry.in_t_format(field);
+    description += &entry.elsewhere(field);
     if let resets @ [_, _, ..] = &entry.field_resets(field)[..] {
         let resets: Vec<String> = resets.iter().map(u32::to_string).collect();
         description = format!("{description}; after reset {}", resets.join(", "));

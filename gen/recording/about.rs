@@ -32,13 +32,16 @@ pub struct About {
     pub start: SystemTime,
 }
 
+/// Bits of counts within a turn where a description does not tell: those of recordings that have been made before it did.
+const COUNTS_BITS: u32 = 24;
+
 /// What a measuring step is, as numbers.
 fn scale(scale: &Scale, range: Option<u64>) -> Value {
     let mut object = json!({"unit": scale.convert(0).unit});
     match *scale {
         Scale::Rotary { steps_per_turn } => object["steps_per_turn"] = json!(steps_per_turn),
         Scale::Linear { step_nm } => object["step_nm"] = json!(step_nm),
-        Scale::TFormat => {}
+        Scale::Counts { single_bits } => object["single_bits"] = json!(single_bits),
     }
     if let Some(range) = range {
         object["range"] = json!(range);
@@ -54,7 +57,14 @@ pub fn scale_of(object: &Value) -> Option<(Scale, Option<u64>)> {
     ) {
         (Some(steps_per_turn), _) => Scale::Rotary { steps_per_turn },
         (None, Some(step_nm)) => Scale::Linear { step_nm },
-        (None, None) if object["unit"] == "counts" => Scale::TFormat,
+        (None, None) if object["unit"] == "counts" => {
+            let told = object["single_bits"]
+                .as_u64()
+                .and_then(|n| n.try_into().ok());
+            Scale::Counts {
+                single_bits: told.filter(|n| *n < u64::BITS).unwrap_or(COUNTS_BITS),
+            }
+        }
         (None, None) => return None,
     };
     Some((scale, object["range"].as_u64()))
@@ -78,8 +88,7 @@ impl About {
     pub fn json(&self, layout: &Layout, is_text: bool, part: u32) -> Value {
         let channels = layout.scales.iter().enumerate().map(|(n, one)| {
             let mut object = scale(one, self.ranges.get(n).copied().flatten());
-            let is_t_format = self.identity.is_t_format(n);
-            object["protocol"] = json!(if is_t_format { "T-format" } else { "EnDat" });
+            object["protocol"] = json!(self.identity.protocol(n).name());
             if let Some(known) = self.plates.get(n).and_then(Option::as_ref) {
                 object["encoder"] = plate(known);
             }

@@ -221,6 +221,7 @@ mod tests {
     use endat_host::card::Identity;
     use endat_host::feed::Cell;
     use endat_host::units::Scale;
+    use endat_regs::Protocols;
     use std::fs;
     use std::path::{Path, PathBuf};
     use std::time::{Duration, SystemTime};
@@ -243,7 +244,7 @@ mod tests {
                     features: 0,
                     system_hz: SYSTEM_HZ,
                     configuration_hash: 0,
-                    t_format_channels: 0,
+                    protocols: Protocols::ENDAT,
                     stream_additional_data: false,
                 },
                 plates: vec![None, None],

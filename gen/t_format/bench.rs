@@ -1,11 +1,12 @@
 //! The Verilog test bench that is emitted with a receiver: a signal processor on its bus, an encoder on its line.
 
+use super::bench_parts::{cable_and_gap_ns, causes, encoder, IDLE_NS, RATE_ERROR};
 use super::Receiver;
 use crate::artifact::Artifact;
 use crate::error::GenError;
 use crate::template;
-use crate::testbench::t_format::{cable_and_gap_ns, causes, encoder, RATE_ERROR};
-use crate::testbench::{clock_ns, real, tell, whole, T_FORMAT_IDLE_NS};
+use crate::testbench::tell;
+use crate::testbench::text::{clock_ns, real, whole};
 use endat_hdl::t_format::cause;
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::{Content, Request, BIT_HZ, SYSTEM_HZ, WAIT_GRACE_US};
@@ -67,7 +68,7 @@ pub fn artifact(receiver: &Receiver) -> Result<Artifact, GenError> {
             request => start.request_id,
             cable_ns => real(cable_ns),
             exchange_ns => whole(exchange_ns(start)),
-            idle_ns => whole(T_FORMAT_IDLE_NS),
+            idle_ns => whole(IDLE_NS),
             unknown_request => cause::UNKNOWN_REQUEST,
             causes => causes(),
             read_id => Request::ReadEeprom.id(),

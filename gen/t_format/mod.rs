@@ -6,6 +6,12 @@
 //! ```
 
 mod bench;
+mod bench_parts;
+mod channel_report;
+pub(crate) mod encoder;
+pub mod keys;
+pub(crate) mod protocol;
+pub(crate) mod reading;
 mod report;
 
 pub use report::{report, Report};

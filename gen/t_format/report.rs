@@ -1,10 +1,10 @@
 //! What a receiver's configuration becomes, as text and as data.
 
 use super::Receiver;
-use crate::config::words::T_FORMAT;
 use endat_hdl::t_format::protocol::{
     Request, BIT_HZ, FAST_BIT_HZ, FIELD_BITS, SYSTEM_HZ, WAIT_GRACE_US,
 };
+use endat_regs::Protocol;
 use endat_sim::decimal;
 use serde::Serialize;
 use std::fmt;
@@ -88,7 +88,7 @@ pub fn report(receiver: &Receiver) -> Report {
     Report {
         name: receiver.name.clone(),
         config_hash: receiver.hash.clone(),
-        protocol: T_FORMAT,
+        protocol: Protocol::TFormat.row().word,
         bus: crate::config::RECEIVER_BUS,
         encoder: receiver.encoder.clone(),
         bit_hz,

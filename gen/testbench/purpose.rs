@@ -10,7 +10,7 @@ use crate::template;
 use endat_hdl::card::channel_registers::RESULT_WORDS;
 use endat_hdl::card::second_interface::{MARK, RECORD_WORDS};
 use endat_hdl::card::services;
-use endat_hdl::config::{CardConfig, ChannelConfig, ChannelRequest, PhaseSource};
+use endat_hdl::config::{CardConfig, ChannelConfig, ChannelSpec, PhaseSource};
 use endat_hdl::endat::line_delay::mode;
 use endat_hdl::endat::service::program::forced_errors;
 use endat_hdl::endat::timing::{
@@ -45,15 +45,12 @@ pub(super) struct Parts {
 }
 
 /// The card with other settings on all EnDat channels, if they fit it.
-fn changed(
-    card: &CardConfig,
-    change: impl Fn(&ChannelRequest) -> ChannelRequest,
-) -> Option<CardConfig> {
+fn changed(card: &CardConfig, change: impl Fn(&ChannelSpec) -> ChannelSpec) -> Option<CardConfig> {
     let mut card = card.clone();
     let (system_hz, double_edge) = (card.system_hz, card.line.double_edge);
     for (index, channel) in card.channels.iter_mut().enumerate() {
         if channel.is_endat() {
-            let request = change(&channel.request);
+            let request = change(&channel.spec);
             *channel = ChannelConfig::resolve(&request, system_hz, double_edge, index).ok()?;
         }
     }
@@ -65,7 +62,7 @@ fn at_rate(card: &CardConfig, clock_hz: u64) -> Option<CardConfig> {
     if !card.system_hz.is_multiple_of(clock_hz) {
         return None;
     }
-    changed(card, |request| ChannelRequest {
+    changed(card, |request| ChannelSpec {
         clock_hz,
         tst_ns: if clock_hz >= TST_FROM_HZ {
             TST_USUAL_NS
@@ -140,7 +137,7 @@ const RUN_FRAMES: u64 = 3;
 /// The card with the command of the continuous clock on its EnDat channels, if it has one.
 fn running(card: &CardConfig) -> Option<CardConfig> {
     let command = ModeCommand::SendPosition;
-    let run = |request: &ChannelRequest| ChannelRequest {
+    let run = |request: &ChannelSpec| ChannelSpec {
         command,
         recovery_min_ns: request.recovery_min_ns.max(RECOVERY_MIN_NS),
         ..request.clone()

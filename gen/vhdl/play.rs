@@ -4,6 +4,8 @@ use super::host::{strobe, Host};
 use crate::config::{Project, Receiver};
 use crate::encoders;
 use crate::error::GenError;
+use crate::protocols::other;
+use crate::t_format::encoder::sound;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::service_times;
 use endat_hdl::config::{CardConfig, ChannelConfig};
@@ -11,19 +13,18 @@ use endat_hdl::endat::channel::CALIBRATION_FRAMES;
 use endat_hdl::endat::service::program::{program, ServiceTimes, CLEAR_CYCLES};
 use endat_hdl::endat::timing::{cycles_at_least, RECOVERY_MAX_NS};
 use endat_hdl::regs::{start, CARD, CHANNEL_CONFIG, RESULT};
-use endat_hdl::t_format::protocol::SYSTEM_HZ;
-use endat_sim::bench::{Bench, ChannelSettings, Link, PinNames, TFormatLink};
+use endat_hdl::t_format::protocol::{BIT_HZ, SYSTEM_HZ};
+use endat_sim::bench::{Bench, ChannelSettings, Link, PinNames};
 use endat_sim::line::LineConfig;
-use endat_sim::{t_format, Time, NS, US};
+use endat_sim::{Time, NS, US};
 use rtl_design::elaborate::{Design, Direction, Memory};
 use rtl_design::engine::{Compiled, Port};
 
 /// Triggers behind those that measure the delay; after a long measurement one will do, for simulators are slow.
 const TRIGGERS: usize = 2;
 const TRIGGERS_ALIGNED: usize = 1;
-/// Cable to each encoder, in metres, and as a delay.
+/// Cable to each encoder, in metres.
 const CABLE_M: f64 = 10.0;
-const CABLE_DELAY: Time = 50 * NS;
 /// Longest that an encoder computes.
 const TCAL: Time = 2 * US;
 /// What follows a frame until all of it is seen at the outputs, and what a service does before it takes a trigger, in ns.
@@ -86,21 +87,10 @@ fn without_initialisation(card: &CardConfig, design: &Design) -> Option<Design> 
 fn link(channel: &ChannelConfig, n: usize) -> Link {
     let mut encoder = encoders::turning(channel, n);
     encoder.tcal = TCAL;
-    let request = &channel.request;
+    let request = &channel.spec;
     let tm = Time::from(request.recovery_min_ns.midpoint(request.recovery_max_ns)) * NS;
     encoder.tm = tm..=tm;
     Link::new(LineConfig::cable(CABLE_M).seed(n as u64 + 1), encoder)
-}
-
-fn t_format_link(bit_hz: u64, n: usize) -> TFormatLink {
-    let config = t_format::EncoderConfig {
-        bit_hz,
-        status: 0,
-        alarm: 0,
-        seed: n as u64 + 1,
-        ..t_format::EncoderConfig::default()
-    };
-    TFormatLink::new(config, CABLE_DELAY)
 }
 
 /// A card, and a port without a bus.
@@ -127,17 +117,14 @@ fn bench_of(project: &Project, design: &Design) -> Result<Bench<Compiled>, GenEr
     };
     let links = card.endat_channels().map(|(n, c)| (names(n), link(c, n)));
     let mut bench = Bench::new(engine, card.system_hz, links.collect());
-    for n in card.t_format_numbers() {
-        let request = card.channels[n].t_format.unwrap_or_default();
-        let names = match is_bare {
-            true => continue,
-            false => PinNames::card(n),
-        };
-        bench.add_t_format(&names, t_format_link(request.bit_hz, n));
+    for (n, channel) in card.channels.iter().enumerate().filter(|_| !is_bare) {
+        if let Some(other) = other(channel.protocol()) {
+            bench.add_other(&PinNames::card(n), other.sound(channel, n));
+        }
     }
     if is_bare {
         for (_, channel) in card.endat_channels() {
-            let (hz, bits) = (channel.request.clock_hz, channel.position_bits);
+            let (hz, bits) = (channel.spec.clock_hz, channel.position_bits);
             let settings = ChannelSettings::new(card.system_hz, hz, channel.command, bits);
             bench.configure(&settings);
         }
@@ -243,8 +230,7 @@ pub fn receiver(receiver: &Receiver, design: &Design) -> Result<Played, GenError
         data_i: "encoder_data_i".into(),
         ..PinNames::channel()
     };
-    let request = endat_hdl::config::TFormatRequest::default();
-    bench.add_t_format(&names, t_format_link(request.bit_hz, 0));
+    bench.add_t_format(&names, sound(BIT_HZ, 0));
     for strobe in ["bus_cs_n_i", "bus_rd_n_i", "bus_wr_n_i"] {
         bench.set(strobe, 1);
     }

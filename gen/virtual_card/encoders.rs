@@ -1,23 +1,16 @@
 //! The encoders of a virtual card, and how they move.
 
 use super::sets::Motion;
-use super::{VirtualConfig, SECOND};
+use super::settings::{NO_DEVICE, SECOND};
 use crate::config::Project;
 use crate::encoders;
 use crate::error::{shown, GenError};
-use endat_sim::bench::{TFormatLink, TFormatMotion};
+use crate::other_protocol::Other;
+use crate::protocols::OTHERS;
+use endat_regs::Protocol;
 use endat_sim::encoder::{EncoderConfig, DEVICES};
-use endat_sim::t_format;
-use endat_sim::{Time, MS, NS};
+use endat_sim::Time;
 use std::sync::Arc;
-
-/// The T-format encoder: single-turn position of 17 bits, multi-turn of 16.
-const T_FORMAT_DEVICE: &str = "TS5700N8401";
-/// An open plug, as `--encoder` calls it.
-pub(super) const NO_DEVICE: &str = "none";
-const T_FORMAT_SINGLE_BITS: u32 = 17;
-/// Delay of a metre of cable, in nanoseconds.
-const NS_PER_M: f64 = 5.0;
 
 /// A name as people write it: without spaces, dashes and case.
 fn plain(name: &str) -> String {
@@ -25,8 +18,32 @@ fn plain(name: &str) -> String {
     kept.map(|c| c.to_ascii_lowercase()).collect()
 }
 
-fn is_t_format_device(name: &str) -> bool {
-    plain(name) == plain(T_FORMAT_DEVICE)
+fn has_device(other: &dyn Other, name: &str) -> bool {
+    let mut devices = other.devices().iter();
+    devices.any(|device| plain(device) == plain(name))
+}
+
+/// What a device speaks.
+fn protocol_of(name: &str) -> Protocol {
+    let other = OTHERS.iter().find(|other| has_device(**other, name));
+    other.map_or(Protocol::Endat, |other| other.protocol())
+}
+
+/// Refuses a device that speaks something else than the channel.
+pub(super) fn check_device(
+    other: &dyn Other,
+    channel: usize,
+    wanted: Option<&str>,
+) -> Result<(), GenError> {
+    let Some(name) = wanted.filter(|n| *n != NO_DEVICE && !has_device(other, n)) else {
+        return Ok(());
+    };
+    Err(GenError::input(format!(
+        "--encoder = {}: channel {channel} speaks {}; the devices there are {} and {NO_DEVICE}",
+        shown(name),
+        other.protocol().name(),
+        other.devices().join(", ")
+    )))
 }
 
 /// The device that `--encoder` asks for on a channel. One for all is one for those that speak its protocol.
@@ -35,10 +52,9 @@ pub(super) fn wanted<'a>(
     channel: usize,
     devices: &'a [String],
 ) -> Option<&'a str> {
-    let is_t_format = |n: usize| !project.card.channels[n].is_endat();
     match devices {
         [one] if one != NO_DEVICE => {
-            let is_of = |n: usize| is_t_format(n) == is_t_format_device(one);
+            let is_of = |n: usize| project.card.channels[n].protocol() == protocol_of(one);
             let takes = is_of(channel) || !(0..project.card.channels.len()).any(is_of);
             takes.then_some(one.as_str())
         }
@@ -99,47 +115,4 @@ pub(super) fn motion(encoder: &EncoderConfig, channel: usize, speed: f64) -> Mot
         };
         position.max(0.0) as u64 & ((1u64 << bits) - 1)
     })
-}
-
-/// Single-turn and multi-turn position of a T-format encoder that turns evenly.
-pub(super) fn t_format_motion(channel: usize, speed: f64) -> TFormatMotion {
-    let speed = speed * (1.0 + 0.5 * channel as f64);
-    let start = 100.1 * (channel + 1) as f64;
-    Arc::new(move |time: Time| {
-        let turns = start + speed * time as f64 / SECOND;
-        let steps = (turns * f64::from(1 << T_FORMAT_SINGLE_BITS)).max(0.0) as u64;
-        let single = steps & ((1 << T_FORMAT_SINGLE_BITS) - 1);
-        (single as u32, (steps >> T_FORMAT_SINGLE_BITS) as u16 as u32)
-    })
-}
-
-/// A T-format encoder on its line, turning as others do. `none` is an open plug; there is one device only.
-pub(super) fn t_format_link(
-    bit_hz: u64,
-    channel: usize,
-    wanted: Option<&str>,
-    config: &VirtualConfig,
-) -> Result<TFormatLink, GenError> {
-    if let Some(name) = wanted.filter(|n| *n != NO_DEVICE && !is_t_format_device(n)) {
-        return Err(GenError::input(format!(
-            "--encoder = {}: channel {channel} speaks T-format; the devices there are {T_FORMAT_DEVICE} and {NO_DEVICE}",
-            shown(name)
-        )));
-    }
-    let encoder = t_format::EncoderConfig {
-        bit_hz,
-        // A battery that is full: otherwise every result would have that alarm.
-        status: 0,
-        alarm: 0,
-        jitter: config.jitter_ns as Time * NS,
-        write_time: MS,
-        seed: config.seed.wrapping_add(channel as u64),
-        ..t_format::EncoderConfig::default()
-    };
-    let mut link = TFormatLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
-    link.set_motion(t_format_motion(channel, config.speed));
-    if wanted == Some(NO_DEVICE) {
-        link.unplug();
-    }
-    Ok(link)
 }

@@ -1,12 +1,13 @@
 //! Faults that are made while a virtual card runs: what a cable, a plug or an encoder can do, by name.
 
+use super::deed::Deed;
 use super::VirtualCard;
 use crate::error::{shown, GenError};
 use crate::number::{decimal, number};
 use endat_host::did_you_mean;
 use endat_sim::encoder::{Cause, Defect};
 use endat_sim::line::{FaultKind, GlitchRate, Jitter, LineFault, Wire};
-use endat_sim::{t_format, Time, MS, NS, US};
+use endat_sim::{Time, MS, NS, US};
 
 /// What can be made, what it takes, and what it is.
 pub const FAULTS: [(&str, &str, &str); 13] = [
@@ -24,35 +25,6 @@ pub const FAULTS: [(&str, &str, &str); 13] = [
     ("line", "CHANNEL KIND", "a fault of the pair, until heal: stuck_low, stuck_high, open, short, swapped, data_to_clock, noise, glitches"),
     ("heal", "CHANNEL", "all of these are gone, the plug is in"),
 ];
-
-/// What a T-format encoder and its line can do of it.
-const T_FORMAT_FAULTS: [&str; 9] = [
-    "unplug",
-    "plug",
-    "crc",
-    "silent",
-    "slow",
-    "alarm (bits to 255)",
-    "jitter",
-    "line stuck_low or open",
-    "heal",
-];
-
-/// Bits of ALMC that a bit of the status field tells, too: counting error; multi-turn and battery.
-const ALARMS: [(u16, u8); 2] = [(0x04, 1 << 4), (0xE0, 1 << 5)];
-
-/// What is to be done to a channel.
-#[derive(Clone, Debug, PartialEq)]
-enum Deed {
-    Supply(bool),
-    Spoil(u64, Defect),
-    Slow(Time),
-    Status { alarms: u16, warnings: u16 },
-    Noise(f64),
-    Jitter(Time),
-    Line(FaultKind),
-    Heal,
-}
 
 /// A fault that is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -227,14 +199,17 @@ impl VirtualCard {
             ));
         };
         match port {
-            PortOf::TFormat(index) => {
-                self.disturb_t_format(index, fault.deed).ok_or_else(|| {
+            PortOf::Other(index) => {
+                let (faults, encoder) = (&mut self.others[index], self.bench.other_mut(index));
+                let name = encoder.protocol().name();
+                faults.make(encoder, fault.deed).ok_or_else(|| {
                     format!(
-                        "channel = {}: speaks T-format, which knows {} only",
+                        "channel = {}: speaks {name}, which knows {} only",
                         fault.channel,
-                        T_FORMAT_FAULTS.join(", ")
+                        faults.known().join(", ")
                     )
-                })?
+                })?;
+                self.is_spoilt = true;
             }
             PortOf::Endat(index) => self.disturb(index, fault.deed, now, seed),
         }
@@ -245,65 +220,13 @@ impl VirtualCard {
         ))
     }
 
-    /// None if there is no such fault of a T-format encoder.
-    fn disturb_t_format(&mut self, index: usize, deed: Deed) -> Option<()> {
-        let link = self.bench.t_format_mut(index);
-        let until = |replies| Some(link.encoder().requests().len() as u64 + replies);
-        let (ends, defect) = match deed {
-            // Of a position: only the CRC tells.
-            Deed::Spoil(replies, Defect::CrcXor(_)) => {
-                let flip = t_format::Defect::Flip { field: 2, bit: 0 };
-                (until(replies), flip)
-            }
-            Deed::Spoil(replies, Defect::NoStartBit) => (until(replies), t_format::Defect::Silent),
-            Deed::Line(FaultKind::StuckLow) => (None, t_format::Defect::StuckLow),
-            _ => {
-                match deed {
-                    Deed::Supply(true) => link.plug(),
-                    Deed::Supply(false) | Deed::Line(FaultKind::Open) => link.unplug(),
-                    Deed::Slow(by) => {
-                        link.encoder_mut().config.reply_gap = self.sound[index].reply_gap + by;
-                    }
-                    Deed::Jitter(most) => link.encoder_mut().config.jitter = most,
-                    Deed::Status {
-                        alarms,
-                        warnings: 0,
-                    } if alarms <= 0xFF => {
-                        let config = &mut link.encoder_mut().config;
-                        config.alarm |= alarms as u8;
-                        // The status field sums them up.
-                        for (bits, status) in ALARMS {
-                            config.status |= if alarms & bits == 0 { 0 } else { status };
-                        }
-                    }
-                    Deed::Heal => {
-                        link.plug();
-                        link.encoder_mut().config = self.sound[index].clone();
-                        self.spoiled.retain(|s| s.index != index);
-                    }
-                    _ => return None,
-                }
-                return Some(());
-            }
-        };
-        link.encoder_mut().config.defect = defect;
-        self.spoiled.retain(|s| s.index != index);
-        self.spoiled
-            .extend(ends.map(|requests| Spoiled { index, requests }));
-        Some(())
-    }
-
-    /// Ends what was to spoil some replies of T-format encoders only.
+    /// Ends what was to spoil some replies only.
     pub(super) fn mend(&mut self) {
         let bench = &mut self.bench;
-        self.spoiled.retain(|spoiled| {
-            let encoder = bench.t_format_mut(spoiled.index).encoder_mut();
-            let goes_on = (encoder.requests().len() as u64) < spoiled.requests;
-            if !goes_on {
-                encoder.config.defect = t_format::Defect::None;
-            }
-            goes_on
-        });
+        self.is_spoilt = false;
+        for (index, faults) in self.others.iter_mut().enumerate() {
+            self.is_spoilt |= faults.mend(bench.other_mut(index));
+        }
     }
 
     fn disturb(&mut self, index: usize, deed: Deed, now: Time, seed: u64) {
@@ -356,15 +279,8 @@ impl VirtualCard {
 pub(super) enum PortOf {
     /// EnDat.
     Endat(usize),
-    /// T-format.
-    TFormat(usize),
-}
-
-/// A T-format encoder whose replies are spoilt until it has heard so many requests.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spoiled {
-    index: usize,
-    requests: u64,
+    /// Another protocol.
+    Other(usize),
 }
 
 #[cfg(test)]

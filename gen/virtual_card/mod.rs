@@ -8,26 +8,34 @@
 //! Time is simulated time. In the same process ([`VirtualCard`] is a [`Transport`]) a host waits for nothing; behind a port
 //! ([`serve`]) the card keeps real time as well as it can.
 
+pub(crate) mod deed;
 mod encoders;
 mod faults;
 mod gateway;
 mod host_end;
 mod serve;
-mod sets;
+pub(crate) mod sets;
+pub(crate) mod settings;
 mod words;
 
 pub use faults::{Fault, FAULTS};
 pub use serve::{serve, Door, Pace, CONTROL};
+pub use settings::{VirtualConfig, CABLE_M};
 
-use encoders::{encoder, motion, t_format_link, t_format_motion, wanted, NO_DEVICE};
-use faults::{PortOf, Spoiled};
+use encoders::{check_device, encoder, motion, wanted};
+use faults::PortOf;
 use gateway::Gateway;
 use host_end::HostEnd;
 use sets::{Motion, Sets};
+use settings::{NO_DEVICE, SECOND};
 use words::Words;
 
 use crate::config::{load_file, load_preset, preset_of, Project, Receiver, DEFAULT_PRESET};
 use crate::error::GenError;
+use crate::other_protocol::OtherFaults;
+use crate::protocols::other;
+use crate::t_format::encoder as t_format_encoder;
+use crate::t_format::protocol::TFormat;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::service_times;
 use endat_hdl::endat::service::program::ServiceTimes;
@@ -38,7 +46,7 @@ use endat_host::{Bridge, HostError, Transport};
 use endat_sim::bench::{Bench, Link, PinNames, Uart};
 use endat_sim::encoder::{LatchEdge, PositionSource};
 use endat_sim::line::{Jitter, LineConfig};
-use endat_sim::{t_format, Time, MS, NS, US};
+use endat_sim::{Time, MS, NS, US};
 use rtl_design::elaborate::Design;
 use rtl_design::engine::Compiled;
 use std::borrow::Cow;
@@ -47,8 +55,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Cable between card and encoders, unless told otherwise.
-pub const CABLE_M: f64 = 10.0;
 /// A half-sent command is forgotten after this; real cards take 100 ms, which would be seconds of simulation.
 const LINK_TIMEOUT_US: u64 = 5_000;
 /// Waits of the initialisation, for the same reason; real ones add up to 1.9 s.
@@ -56,39 +62,8 @@ const POWER_UP_MS: u16 = 2;
 const RESET_MS: u16 = 3;
 const WRITE_MS: u16 = 2;
 
-/// A second of simulated time.
-const SECOND: f64 = 1_000.0 * MS as f64;
-
-/// What a virtual card is made of.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VirtualConfig {
-    /// Device at each port, `none` for an open plug; one for all, or one for each. Empty: what the configuration names.
-    pub encoders: Vec<String>,
-    /// Cable to each encoder in metres.
-    pub cable_m: f64,
-    /// DATA edges come up to so much earlier or later, in nanoseconds.
-    pub jitter_ns: u64,
-    /// How fast shafts turn, in turns per second (linear encoders: hundredths of a metre per second).
-    pub speed: f64,
-    /// Seed of everything random.
-    pub seed: u64,
-    /// Sets of the stream are made by arithmetic instead of the core: one for each trigger of the timer, as fast as the host takes them,
-    /// or in real time behind a port.
-    pub makes_sets: bool,
-}
-
-impl Default for VirtualConfig {
-    fn default() -> Self {
-        Self {
-            encoders: Vec::new(),
-            cable_m: CABLE_M,
-            jitter_ns: 0,
-            speed: 0.25,
-            seed: 1,
-            makes_sets: false,
-        }
-    }
-}
+/// What can be wrong with an encoder of another protocol.
+type Faults = Box<dyn OtherFaults>;
 
 /// A simulated card.
 pub struct VirtualCard {
@@ -100,9 +75,9 @@ pub struct VirtualCard {
     ports: Vec<PortOf>,
     /// What it is where nobody has made it worse.
     jitter: Jitter,
-    /// The T-format encoders as they were, and those whose next replies are spoilt.
-    sound: Vec<t_format::EncoderConfig>,
-    spoiled: Vec<Spoiled>,
+    /// What is wrong with each of the encoders of other protocols, and whether some of it ends by itself.
+    others: Vec<Faults>,
+    is_spoilt: bool,
 }
 
 /// What a port begins with that is simulated in this process; `load` is a card whose sets of the stream are made.
@@ -171,20 +146,16 @@ fn plug(
     project: &Project,
     channel: usize,
     config: &VirtualConfig,
-) -> Result<(PortOf, Motion), GenError> {
+) -> Result<(PortOf, Motion, Option<Faults>), GenError> {
     let wanted = wanted(project, channel, &config.encoders);
     let settings = &project.card.channels[channel];
     let pins = PinNames::card(channel);
-    if !settings.is_endat() {
-        let bit_hz = settings.t_format.unwrap_or_default().bit_hz;
-        let link = t_format_link(bit_hz, channel, wanted, config)?;
-        let motion = t_format_motion(channel, config.speed);
-        let position = move |time| {
-            let (single, multi) = motion(time);
-            u64::from(multi) << 24 | u64::from(single)
-        };
-        let port = PortOf::TFormat(bench.add_t_format(&pins, link));
-        return Ok((port, Arc::new(position)));
+    if let Some(other) = other(settings.protocol()) {
+        check_device(other, channel, wanted)?;
+        let is_open = wanted == Some(NO_DEVICE);
+        let plugged = other.plug(settings, channel, is_open, config);
+        let port = PortOf::Other(bench.add_other(&pins, plugged.encoder));
+        return Ok((port, plugged.motion, Some(plugged.faults)));
     }
     let is_open = wanted == Some(NO_DEVICE);
     let mut encoder = encoder(project, channel, wanted.filter(|_| !is_open))?;
@@ -204,7 +175,7 @@ fn plug(
     let mut line = LineConfig::cable(config.cable_m).seed(config.seed.wrapping_add(channel as u64));
     line.data_in.jitter = jitter(config);
     let link = Link::new(line, encoder);
-    Ok((PortOf::Endat(bench.add_endat(&pins, link)), motion))
+    Ok((PortOf::Endat(bench.add_endat(&pins, link)), motion, None))
 }
 
 impl VirtualCard {
@@ -247,11 +218,12 @@ impl VirtualCard {
         if card.line.double_edge {
             bench.set_double_edge();
         }
-        let (mut ports, mut motions) = (Vec::new(), Vec::new());
+        let (mut ports, mut motions, mut others) = (Vec::new(), Vec::new(), Vec::new());
         for channel in 0..card.channels.len() {
-            let (port, motion) = plug(&mut bench, &project, channel, config)?;
+            let (port, motion, faults) = plug(&mut bench, &project, channel, config)?;
             ports.push(port);
             motions.push(motion);
+            others.extend(faults);
         }
         let sets = config.makes_sets.then(|| {
             Sets::new(
@@ -265,7 +237,7 @@ impl VirtualCard {
             None => HostEnd::Uart(Uart::new(&mut bench, card.uart_bit_cycles)),
             Some(words) => HostEnd::Gateway(Gateway::new(words, &mut bench, LINK_TIMEOUT_US, sets)),
         };
-        Ok(Self::powered(bench, host, ports, jitter(config)))
+        Ok(Self::powered(bench, host, (ports, others), jitter(config)))
     }
 
     /// A T-format receiver for a signal processor, which a controller sits at: its addresses, and no registers of a card.
@@ -285,26 +257,26 @@ impl VirtualCard {
         let design = crate::t_format::design(receiver)?;
         let mut bench = Bench::new(compiled(&design)?, RECEIVER_HZ[0], Vec::new());
         let wanted = config.encoders.first().map(String::as_str);
-        let link = t_format_link(receiver.bit_hz(), 0, wanted, config)?;
-        bench.add_t_format(&PinNames::receiver(), link);
+        check_device(&TFormat, 0, wanted)?;
+        let is_open = wanted == Some(NO_DEVICE);
+        let plugged = t_format_encoder::plug(receiver.bit_hz(), 0, is_open, config);
+        bench.add_other(&PinNames::receiver(), plugged.encoder);
         let host = HostEnd::Gateway(Gateway::new(Words::Dsp, &mut bench, LINK_TIMEOUT_US, None));
-        let ports = vec![PortOf::TFormat(0)];
+        let ports = (vec![PortOf::Other(0)], vec![plugged.faults]);
         Ok(Self::powered(bench, host, ports, jitter(config)))
     }
 
     fn powered(
         mut bench: Bench<Compiled>,
         host: HostEnd,
-        ports: Vec<PortOf>,
+        (ports, others): (Vec<PortOf>, Vec<Faults>),
         jitter: Jitter,
     ) -> Self {
         let cycles_per_us = (bench.system_hz() / 1_000_000).max(1);
-        let t_format = (0..bench.t_format_count()).map(|n| bench.t_format(n).encoder());
-        let sound = t_format.map(|encoder| encoder.config.clone()).collect();
         bench.power_up();
         Self {
-            sound,
-            spoiled: Vec::new(),
+            others,
+            is_spoilt: false,
             bench,
             host,
             cycles_per_us,
@@ -318,7 +290,7 @@ impl VirtualCard {
         let end = self.bench.cycle() + cycles;
         while self.bench.cycle() < end {
             self.host.step(&mut self.bench);
-            if !self.spoiled.is_empty() {
+            if self.is_spoilt {
                 self.mend();
             }
         }

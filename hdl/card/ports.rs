@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! front --Access--> CardCore, RegisterBank        Stream --Push--> CardCore, front
-//! RegisterBank --ServiceWords--> services, line monitors and T-format ports
+//! RegisterBank --ServiceWords--> services, line monitors and ports of other protocols
 //! ```
 
 use rtl_design::ports;
@@ -58,9 +58,9 @@ pub struct Push {
 /// Words that are not the bank's own.
 #[ports]
 pub struct ServiceWords {
-    /// The word is one of a line monitor or a T-format port, not of a service.
+    /// The word is one of a line monitor or of a port of another protocol, not of a service.
     pub service_line: Bit,
-    /// Word of a service's RAM, a line monitor or a T-format port.
+    /// Word of a service's RAM, a line monitor or a port of another protocol.
     pub service_address: Bits<7>,
     /// The channel that it belongs to, one bit per channel.
     pub service_channels: Bits<8>,

@@ -156,11 +156,11 @@ pub struct RegisterBank {
     rom_word: Signal<Local, Bits<32>>,
     has_service: Constant<Bit>,
     has_line: Constant<Bit>,
-    has_t_format: Constant<Bit>,
-    t_format_channels: Constant<Bits<8>>,
+    has_others: Constant<Bit>,
+    other_channels: Constant<Bits<8>>,
     endat_channels: Constant<Bits<8>>,
     line_page: Signal<Local, Bit>,
-    t_format_page: Signal<Local, Bit>,
+    port_page: Signal<Local, Bit>,
     word_page: Signal<Local, Bit>,
     selected: Signal<Local, Bits<8>>,
     protocols: Constant<Bits<32>>,
@@ -199,16 +199,17 @@ impl RegisterBank {
     /// The bank of a card.
     pub fn new(config: &CardConfig) -> Self {
         let words = config_words(config, None);
-        let t_format_channels = config.t_format_channels();
+        let others = (0..).zip(&config.channels).filter(|(_, c)| !c.is_endat());
+        let other_channels = others.fold(0u64, |mask, (n, _)| mask | 1 << n);
         Self::from_parts(RegisterBankParts {
             active_sources: Reg::new(u64::from(words[0] & 7).into()),
             active_period: Reg::new(u64::from(words[1]).into()),
             ring: ConfigRing::new(words),
             has_service: Constant::new(config.service.requests),
             has_line: Constant::new(config.line.alignment),
-            has_t_format: Constant::new(t_format_channels != 0),
-            t_format_channels: Constant::new(t_format_channels.into()),
-            endat_channels: Constant::new((!t_format_channels & 0xff).into()),
+            has_others: Constant::new(other_channels != 0),
+            other_channels: Constant::new(other_channels.into()),
+            endat_channels: Constant::new((!other_channels & 0xff).into()),
             protocols: card_word(config, "protocols"),
             id: card_word(config, "id"),
             version: card_word(config, "version"),

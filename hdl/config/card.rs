@@ -28,7 +28,7 @@ fn too_fast_for(
     Problem {
         section: Section::Channel(index),
         key: "clock_hz",
-        value: channel.request.clock_hz.to_string(),
+        value: channel.spec.clock_hz.to_string(),
         text: format!(
             "its period is {} cycles of clock.system_hz = {system_hz}, {what} {cycles_min}; use at most {} Hz, or leave \"{part}\" out of service.parts",
             channel.period_cycles,
@@ -192,7 +192,7 @@ impl CardDraft {
         let period = period_cycles(sample_hz, system_hz);
         // A channel that takes one of several triggers has so much longer.
         let share = |channel: &ChannelConfig| {
-            let own = channel.request.trigger.unwrap_or_default();
+            let own = channel.spec.trigger.unwrap_or_default();
             let divider = own.timer_divider()?.max(1);
             let cycles = channel.cycle_max_cycles(system_hz);
             Some((cycles.div_ceil(divider), cycles, divider))
@@ -204,7 +204,12 @@ impl CardDraft {
         let timer = self.sources.is_some_and(|s| s.timer);
         if let Some(((share, cycles, divider), index, channel)) = longest.filter(|_| timer) {
             if share > period {
-                let mut text = too_long(*index, channel, (cycles, divider), system_hz);
+                let times = TooLong {
+                    cycles,
+                    divider,
+                    system_hz,
+                };
+                let mut text = channel.too_long(*index, times);
                 if divider > 1 {
                     text += &format!(", or raise divider = {divider} of the channel");
                 }
@@ -333,26 +338,29 @@ impl CardDraft {
     }
 }
 
-/// Why a trigger would come before a channel is ready, with the shares that can be shortened, the longest first.
-fn too_long(
-    index: usize,
-    channel: &ChannelConfig,
-    (cycles, divider): (u64, u64),
-    system_hz: u64,
-) -> String {
-    let highest_hz = system_hz.saturating_mul(divider) / cycles;
-    if let Some(t_format) = &channel.t_format {
-        return format!(
-            "an exchange of T-format channel {index} takes up to {} us with its pauses, so at most {} Hz; lower it, or lower reply_gap_us = {} and field_gap_us = {}, or ask for less with request = 0",
-            microseconds(cycles, system_hz),
-            highest_hz,
-            t_format.reply_gap_us,
-            t_format.field_gap_us
-        );
+/// A channel that is not ready when the next trigger comes.
+#[derive(Clone, Copy)]
+pub(crate) struct TooLong {
+    /// What it takes at most.
+    pub(crate) cycles: u64,
+    /// It takes one of so many triggers.
+    pub(crate) divider: u64,
+    pub(crate) system_hz: u64,
+}
+
+impl TooLong {
+    /// The highest rate of triggers that it takes.
+    pub(crate) fn highest_hz(self) -> u64 {
+        self.system_hz.saturating_mul(self.divider) / self.cycles
     }
+}
+
+/// Why a trigger would come before an EnDat channel is ready, with the shares that can be shortened, the longest first.
+pub(crate) fn frame_too_long(index: usize, channel: &ChannelConfig, times: TooLong) -> String {
+    let system_hz = times.system_hz;
     let frame = channel.frame_time(system_hz);
     let waiting = (frame.lead_pulses - u64::from(LEAD_PULSES)) * channel.period_cycles;
-    let request = &channel.request;
+    let request = &channel.spec;
     let recovery = cycles_at_least(request.recovery_max_ns, system_hz);
     let mut shares = [
         (
@@ -383,14 +391,14 @@ fn too_long(
         .collect();
     format!(
         "a frame of channel {index} with its recovery time takes up to {} us, the largest part from {key} = {value}, so at most {} Hz; lower it, or {}",
-        microseconds(cycles, system_hz),
-        highest_hz,
+        microseconds(times.cycles, system_hz),
+        times.highest_hz(),
         remedies.join(", or ")
     )
 }
 
 /// Rounded up to nanoseconds, without needless zeros.
-fn microseconds(cycles: u64, system_hz: u64) -> String {
+pub(crate) fn microseconds(cycles: u64, system_hz: u64) -> String {
     let ns = (u128::from(cycles) * 1_000_000_000).div_ceil(u128::from(system_hz));
     let text = format!("{}.{:03}", ns / 1_000, ns % 1_000);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -398,13 +406,13 @@ fn microseconds(cycles: u64, system_hz: u64) -> String {
 
 impl CardConfig {
     /// Converts and checks a whole card; `Err` has every problem found.
-    pub fn resolve(request: &CardRequest) -> Result<Self, Vec<Problem>> {
+    pub fn resolve(request: &CardSpec) -> Result<Self, Vec<Problem>> {
         CardDraft::from(request).resolve()
     }
 
     /// Whether each channel has its own enable, divider and sources.
     pub fn own_triggers(&self) -> bool {
-        self.channels.iter().any(|c| c.request.trigger.is_some())
+        self.channels.iter().any(|c| c.spec.trigger.is_some())
     }
 
     /// Sampling rate that the timer really makes, in hertz.

@@ -6,32 +6,16 @@ use super::limits::{
 use super::*;
 use crate::endat::timing::*;
 use crate::protocol::{INFO_BITS, LEAD_PULSES, SUPPLEMENT_PULSES};
+use crate::protocols::Spoken;
 
 impl ChannelConfig {
-    /// Whether it speaks EnDat; otherwise T-format.
-    pub fn is_endat(&self) -> bool {
-        self.t_format.is_none()
-    }
-
-    /// Converts and checks one channel; `Err` has every problem found.
-    pub fn resolve(
-        request: &ChannelRequest,
+    /// Converts and checks a channel that speaks EnDat.
+    pub(crate) fn of_endat(
+        check: &mut Check<'_>,
+        request: &ChannelSpec,
         system_hz: u64,
         double_edge: bool,
-        index: usize,
-    ) -> Result<Self, Vec<Problem>> {
-        let mut problems = Vec::new();
-        let mut check = Check {
-            section: Section::Channel(index),
-            problems: &mut problems,
-        };
-        if let Some(wanted) = &request.t_format {
-            let resolved = Self::resolve_t_format(&mut check, request, wanted, system_hz);
-            return match resolved {
-                Some(config) if problems.is_empty() => Ok(config),
-                _ => Err(problems),
-            };
-        }
+    ) -> Option<Self> {
         let system = Some(system_hz);
         let mut check_one = |key, value| check.within(key, value, &limits(key, system));
         let position_good = check_one("position_bits", request.position_bits);
@@ -40,7 +24,7 @@ impl ChannelConfig {
         // What is wrong itself must not narrow what another may be.
         let cable_m = if cable_good { request.cable_m } else { 0 };
         let calibration_good =
-            !(cable_good && clock_good) || check_calibration(&mut check, request, system_hz);
+            !(cable_good && clock_good) || check_calibration(check, request, system_hz);
         let slowest_hz = match (clock_good, calibration_good) {
             (true, true) => request.clock_hz.min(request.calibration_hz()),
             _ => CALIBRATION_HZ,
@@ -51,24 +35,18 @@ impl ChannelConfig {
             request.tcal_max_ns,
             &Limits::new(1..=tcal_most_ns),
         );
-        check_recovery(&mut check, request, recovery_most_ns(system_hz, cable_m));
+        check_recovery(check, request, recovery_most_ns(system_hz, cable_m));
         let period = clock_good
-            .then(|| check_clock(&mut check, request.clock_hz, system_hz, double_edge))
+            .then(|| check_clock(check, request.clock_hz, system_hz, double_edge))
             .flatten();
-        let resolved = period.map(|period_cycles| {
+        period.map(|period_cycles| {
             let half = period_cycles / 2;
             let places = 1 + u64::from(double_edge);
-            let filter_places = check_filter(
-                &mut check,
-                request,
-                half,
-                places,
-                system_hz,
-                "an EnDat period",
-            );
+            let filter_places =
+                check_filter(check, request, half, places, system_hz, "an EnDat period");
             Self {
                 period_cycles,
-                first_low_extra_cycles: check_tst(&mut check, request, half, system_hz),
+                first_low_extra_cycles: check_tst(check, request, half, system_hz),
                 command: request.command,
                 position_bits: if position_good {
                     request.position_bits as u32
@@ -77,7 +55,7 @@ impl ChannelConfig {
                 },
                 filter_cycles: filter_places / places,
                 filter_half: filter_places % places == 1,
-                start_window_cycles: check_window(&mut check, request, period_cycles, system_hz),
+                start_window_cycles: check_window(check, request, period_cycles, system_hz),
                 start_timeout_us: request
                     .tcal_max_ns
                     .saturating_add(start_wait_ns(slowest_hz, cable_m))
@@ -90,14 +68,10 @@ impl ChannelConfig {
                 // DATA must be low for longer than tR.
                 ready_low_cycles: cycles_at_least(READY_LOW_NS, system_hz) + 1,
                 abort_us: ABORT_US,
-                t_format: None,
-                request: request.clone(),
+                spoken: Spoken::Endat,
+                spec: request.clone(),
             }
-        });
-        match resolved {
-            Some(config) if problems.is_empty() => Ok(config),
-            _ => Err(problems),
-        }
+        })
     }
 
     /// Longest input filter that is worth having: an edge and the longest pulse that is removed fit into half a bit.
@@ -112,7 +86,7 @@ impl ChannelConfig {
 
     /// Whether the encoder's recovery time is to be the short one.
     pub const fn wants_short_recovery(&self) -> bool {
-        self.request.recovery_min_ns < RECOVERY_MIN_NS
+        self.spec.recovery_min_ns < RECOVERY_MIN_NS
     }
 
     /// EnDat clock that the core really makes, in hertz.
@@ -123,7 +97,7 @@ impl ChannelConfig {
     /// Lengths of one frame when the encoder needs its longest calculation time.
     pub fn frame_time(&self, system_hz: u64) -> FrameTime {
         let first_low_cycles = self.period_cycles / 2 + self.first_low_extra_cycles;
-        let tcal_cycles = cycles_at_least(self.request.tcal_max_ns, system_hz);
+        let tcal_cycles = cycles_at_least(self.spec.tcal_max_ns, system_hz);
         let needed = tcal_cycles
             .saturating_sub(first_low_cycles)
             .div_ceil(self.period_cycles);
@@ -148,19 +122,19 @@ impl ChannelConfig {
         let additional_data = 2 * u64::from(INFO_BITS) * self.period_cycles;
         // Parked half a period after the last bit, and one delay later than the receiver sees that bit.
         let supplement = u64::from(SUPPLEMENT_PULSES - 1) * self.period_cycles
-            + cycles_at_least(PARK_NS + self.request.delay_max_ns(), system_hz)
+            + cycles_at_least(PARK_NS + self.spec.delay_max_ns(), system_hz)
             + INPUT_LATENCY_CYCLES;
         frame + additional_data + supplement
     }
 
     /// Clock period of the frame that measures the propagation delay: never shorter than the ordinary one.
     pub fn calibration_period_cycles(&self, system_hz: u64) -> u64 {
-        period_cycles(self.request.calibration_hz(), system_hz).max(self.period_cycles)
+        period_cycles(self.spec.calibration_hz(), system_hz).max(self.period_cycles)
     }
 
     /// Whether that is not the usual one.
     pub fn has_own_calibration(&self, system_hz: u64) -> bool {
-        let usual = calibration_period_cycles(self.request.delay_max_ns(), system_hz);
+        let usual = calibration_period_cycles(self.spec.delay_max_ns(), system_hz);
         self.calibration_period_cycles(system_hz) != usual.max(self.period_cycles)
     }
 
@@ -168,7 +142,7 @@ impl ChannelConfig {
     pub fn calibration_cycles(&self, system_hz: u64) -> u64 {
         let period = self.calibration_period_cycles(system_hz);
         let first_low = period / 2 + self.first_low_extra_cycles;
-        let tcal_cycles = cycles_at_least(self.request.tcal_max_ns, system_hz);
+        let tcal_cycles = cycles_at_least(self.spec.tcal_max_ns, system_hz);
         let lead = tcal_cycles
             .saturating_sub(first_low)
             .div_ceil(period)
@@ -177,10 +151,10 @@ impl ChannelConfig {
     }
 
     /// Shortest time between two frames in the worst case: frame, line delay, longest recovery time, tR.
-    pub(super) fn frame_cycle_max_cycles(&self, system_hz: u64) -> u64 {
+    pub(crate) fn frame_cycle_max_cycles(&self, system_hz: u64) -> u64 {
         self.frame_time(system_hz).frame_cycles
             + cycles_at_least(
-                self.request.delay_max_ns() + self.request.recovery_max_ns,
+                self.spec.delay_max_ns() + self.spec.recovery_max_ns,
                 system_hz,
             )
             + self.ready_low_cycles
@@ -193,7 +167,7 @@ impl ChannelConfig {
 const CALIBRATION_FREE_CYCLES: u64 = 7;
 
 /// The clock that measures the delay: its period must hold the delay, and be one that can be timed.
-fn check_calibration(check: &mut Check<'_>, request: &ChannelRequest, system_hz: u64) -> bool {
+fn check_calibration(check: &mut Check<'_>, request: &ChannelSpec, system_hz: u64) -> bool {
     let held_ns = request.delay_max_ns() + request.filter_ns.min(1_000_000);
     let held_cycles = cycles_at_least(held_ns, system_hz) + CALIBRATION_FREE_CYCLES;
     let fits_hz = system_hz / held_cycles;
@@ -228,7 +202,7 @@ fn check_calibration(check: &mut Check<'_>, request: &ChannelRequest, system_hz:
     true
 }
 
-fn check_recovery(check: &mut Check<'_>, request: &ChannelRequest, most_ns: u64) {
+fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec, most_ns: u64) {
     let (low, high) = (request.recovery_min_ns, request.recovery_max_ns);
     let limits = Limits::new(SHORT_RECOVERY_MIN_NS..=most_ns);
     let low_good = check.within("recovery_min_ns", low, &limits);
@@ -349,7 +323,7 @@ fn check_clock(
 }
 
 /// Cycles that tST adds to the first half period.
-fn check_tst(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_hz: u64) -> u64 {
+fn check_tst(check: &mut Check<'_>, request: &ChannelSpec, half: u64, system_hz: u64) -> u64 {
     let tst = request.tst_ns;
     if tst == 0 {
         return 0;
@@ -368,9 +342,9 @@ fn check_tst(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_
     extra
 }
 
-pub(super) fn check_filter(
+pub(crate) fn check_filter(
     check: &mut Check<'_>,
-    request: &ChannelRequest,
+    request: &ChannelSpec,
     half: u64,
     places: u64,
     system_hz: u64,
@@ -395,12 +369,7 @@ pub(super) fn check_filter(
     cycles
 }
 
-fn check_window(
-    check: &mut Check<'_>,
-    request: &ChannelRequest,
-    period: u64,
-    system_hz: u64,
-) -> u64 {
+fn check_window(check: &mut Check<'_>, request: &ChannelSpec, period: u64, system_hz: u64) -> u64 {
     let cycles = cycles_at_most(request.start_window_ns, system_hz);
     let most = (period / 2).min(max_of(START_WINDOW_BITS));
     if !(1..=most).contains(&cycles) {

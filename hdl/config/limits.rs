@@ -5,9 +5,7 @@ use crate::card::channel_trigger::SKIP_BITS;
 use crate::card::stream::buffer::BUFFER_BYTES;
 use crate::endat::timing::*;
 use crate::protocol::POSITION_BITS;
-use crate::t_format::protocol::{
-    BIT_HZ, FAST_BIT_HZ, FIELD_GAP_US_MAX, FILTER_CYCLES_MAX, REPLY_GAP_US_MAX,
-};
+use crate::protocols;
 use endat_regs::service::{ERROR_TEST_MS_MAX, ERROR_TEST_PATIENCE_MS};
 
 /// System clock cycles in the shortest period of the serial clock, behind SPI.
@@ -99,15 +97,10 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "drift_limit_ns" => 0..=cycles_at_most_ns(max_of(DRIFT_LIMIT_BITS) >> 4, slow),
         "base_address" => 0..=u64::from(u32::MAX),
         "sck_hz" => 1..=fast / SCK_CYCLES_MIN,
-        "bit_hz" => BIT_HZ..=FAST_BIT_HZ,
-        "request" => 0..=15,
-        "reply_gap_us" => 1..=REPLY_GAP_US_MAX,
-        "field_gap_us" => 0..=FIELD_GAP_US_MAX,
-        "filter_cycles" => 0..=FILTER_CYCLES_MAX,
         "samples" => 1..=3,
         "divider" => 1..=1 << SKIP_BITS,
         "error_test_ms" => ERROR_TEST_PATIENCE_MS.into()..=ERROR_TEST_MS_MAX.into(),
-        _ => 0..=u64::MAX,
+        _ => protocols::range(key).unwrap_or(0..=u64::MAX),
     };
     Limits {
         or_zero: key == "tst_ns" || key == "fifo_bytes",

@@ -1,7 +1,7 @@
 //! The configuration of a card: what a user asks for in hertz and nanoseconds, and what the blocks get in cycles.
 //!
 //! ```text
-//! CardRequest (Hz, ns, bits) --CardConfig::resolve--> CardConfig (cycles, checked) --> blocks, explain, files
+//! CardSpec (Hz, ns, bits) --CardConfig::resolve--> CardConfig (cycles, checked) --> blocks, explain, files
 //! ```
 //!
 //! The conversion happens here and nowhere else. Every problem is reported, not only the first; each names the
@@ -11,18 +11,20 @@ mod card;
 mod channel;
 mod limits;
 mod parts;
-mod t_format;
+mod spoken;
 
+pub(crate) use card::{frame_too_long, microseconds, TooLong};
 pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
+pub(crate) use channel::check_filter;
 pub use limits::{limits, Limits};
 pub use parts::{
     LineParts, OutputParts, PhaseSource, SafetyParts, ServiceParts, StreamParts, StreamStart,
     ERROR_TEST_MS,
 };
-pub use t_format::{is_rate, is_triggered, TFormatRequest};
 
 use crate::endat::timing::{calibration_hz, TST_FROM_HZ, TST_USUAL_NS};
 use crate::protocol::ModeCommand;
+use crate::protocols::Spoken;
 use endat_regs::{CARD_CONFIG, CHANNELS_MAX, CHANNEL_CONFIG, LINE};
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -76,7 +78,7 @@ pub const INPUT_LATENCY_CYCLES: u64 = 32;
 
 /// What is asked of one channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChannelRequest {
+pub struct ChannelSpec {
     /// EnDat clock, in hertz.
     pub clock_hz: u64,
     /// EnDat clock of the frames that measure the propagation delay, in hertz; `None` = the usual one for the cable.
@@ -99,19 +101,19 @@ pub struct ChannelRequest {
     pub recovery_max_ns: u64,
     /// Longest cable, in metres.
     pub cable_m: u64,
-    /// The channel speaks T-format: of the other numbers only `filter_ns` counts.
-    pub t_format: Option<TFormatRequest>,
+    /// What the channel speaks; if that is not EnDat, of the other numbers only `filter_ns` counts.
+    pub spoken: Spoken,
     /// Which triggers the channel takes; if all channels say nothing about it, every one takes all, and there is no logic for another choice.
     pub trigger: Option<OwnTrigger>,
 }
 
 /// What is asked of a card.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CardRequest {
+pub struct CardSpec {
     /// System clock of the core, in hertz.
     pub system_hz: u64,
     /// The encoder ports.
-    pub channels: Vec<ChannelRequest>,
+    pub channels: Vec<ChannelSpec>,
     /// Sampling rate of the timer trigger, in hertz.
     pub sample_hz: u64,
     /// Which triggers are enabled after reset.
@@ -138,7 +140,7 @@ pub struct CardDraft {
     /// System clock of the core, in hertz.
     pub system_hz: Option<u64>,
     /// The encoder ports.
-    pub channels: Option<Vec<Option<ChannelRequest>>>,
+    pub channels: Option<Vec<Option<ChannelSpec>>>,
     /// Sampling rate of the timer trigger, in hertz.
     pub sample_hz: Option<u64>,
     /// Which triggers are enabled after reset.
@@ -165,8 +167,8 @@ pub struct CardDraft {
     pub without_uart: bool,
 }
 
-impl From<&CardRequest> for CardDraft {
-    fn from(request: &CardRequest) -> Self {
+impl From<&CardSpec> for CardDraft {
+    fn from(request: &CardSpec) -> Self {
         Self {
             system_hz: Some(request.system_hz),
             channels: Some(request.channels.iter().cloned().map(Some).collect()),
@@ -302,11 +304,11 @@ pub struct ChannelConfig {
     pub ready_low_cycles: u64,
     /// Quiet time after an aborted transfer, in microseconds.
     pub abort_us: u64,
-    /// The channel speaks T-format: `period_cycles` is a bit, `start_timeout_us` the longest pause before the reply, and of the other
-    /// numbers only `filter_cycles` counts.
-    pub t_format: Option<TFormatRequest>,
+    /// What the channel speaks. In T-format `period_cycles` is a bit, `start_timeout_us` the longest pause before the reply, and of the
+    /// other numbers only `filter_cycles` counts.
+    pub spoken: Spoken,
     /// What was asked for, for reports.
-    pub request: ChannelRequest,
+    pub spec: ChannelSpec,
 }
 
 /// A checked card in the units of the blocks.
@@ -359,7 +361,7 @@ pub struct FrameTime {
     pub frame_cycles: u64,
 }
 
-impl ChannelRequest {
+impl ChannelSpec {
     /// Longest propagation delay tD of the line, in ns (PWM 20).
     pub const fn delay_max_ns(&self) -> u64 {
         delay_max_ns(self.cable_m)
@@ -399,13 +401,17 @@ const fn max_of(bits: u32) -> u64 {
 }
 
 /// Collects the problems of one section.
-struct Check<'a> {
+pub(crate) struct Check<'a> {
     section: Section,
     problems: &'a mut Vec<Problem>,
 }
 
-impl Check<'_> {
-    fn fail(&mut self, key: &'static str, value: impl fmt::Display, text: String) {
+impl<'a> Check<'a> {
+    pub(crate) fn new(section: Section, problems: &'a mut Vec<Problem>) -> Self {
+        Self { section, problems }
+    }
+
+    pub(crate) fn fail(&mut self, key: &'static str, value: impl fmt::Display, text: String) {
         self.problems.push(Problem {
             section: self.section,
             key,
@@ -415,7 +421,7 @@ impl Check<'_> {
     }
 
     /// Whether `value` is within `limits`; reports it when not.
-    fn within(&mut self, key: &'static str, value: u64, limits: &Limits) -> bool {
+    pub(crate) fn within(&mut self, key: &'static str, value: u64, limits: &Limits) -> bool {
         let inside = limits.contains(value);
         if !inside {
             self.fail(key, value, limits.to_string());

@@ -3,8 +3,8 @@
 use super::*;
 use crate::endat::timing::{PERIOD_CYCLES_MIN, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 
-fn rcn_8510() -> ChannelRequest {
-    ChannelRequest {
+fn rcn_8510() -> ChannelSpec {
+    ChannelSpec {
         clock_hz: 3_125_000,
         calibration_hz: None,
         tst_ns: 2_000,
@@ -16,13 +16,13 @@ fn rcn_8510() -> ChannelRequest {
         recovery_min_ns: RECOVERY_MIN_NS,
         recovery_max_ns: RECOVERY_MAX_NS,
         cable_m: 100,
-        t_format: None,
+        spoken: Spoken::Endat,
         trigger: None,
     }
 }
 
-fn card() -> CardRequest {
-    CardRequest {
+fn card() -> CardSpec {
+    CardSpec {
         system_hz: 100_000_000,
         channels: vec![rcn_8510(), rcn_8510()],
         sample_hz: 10_000,
@@ -51,7 +51,7 @@ fn frame(clock_hz: u64, command: ModeCommand, bits: u64, tst_ns: u64) -> (u64, f
                 && s / clock_hz >= PERIOD_CYCLES_MIN
         })
         .expect("a system clock for every row");
-    let request = ChannelRequest {
+    let request = ChannelSpec {
         clock_hz,
         command,
         position_bits: bits,
@@ -172,7 +172,7 @@ fn frame_times_of_endat_2_2_are_the_table() {
     ];
     for (khz, row) in table {
         for (bits, (pulses, us)) in [25, 29, 36, 37].into_iter().zip(row) {
-            let tst = ChannelRequest::usual_tst_ns(khz * 1_000);
+            let tst = ChannelSpec::usual_tst_ns(khz * 1_000);
             let (got_pulses, got_us) =
                 frame(khz * 1_000, ModeCommand::SendPositionAddInfo, bits, tst);
             assert_eq!(got_pulses, pulses, "{khz} kHz, {bits} bits");
@@ -207,7 +207,7 @@ fn the_card_of_the_paper_resolves_to_these_cycles() {
 
 #[test]
 fn an_odd_period_keeps_the_first_low_phase_at_least_tst() {
-    let request = ChannelRequest {
+    let request = ChannelSpec {
         clock_hz: 4_000_000,
         ..rcn_8510()
     };
@@ -220,7 +220,7 @@ fn an_odd_period_keeps_the_first_low_phase_at_least_tst() {
 }
 
 /// The only problem of a card changed by `change`.
-fn problem(change: impl Fn(&mut CardRequest)) -> Problem {
+fn problem(change: impl Fn(&mut CardSpec)) -> Problem {
     let mut request = card();
     change(&mut request);
     let problems = CardConfig::resolve(&request).expect_err("must be refused");
@@ -230,7 +230,7 @@ fn problem(change: impl Fn(&mut CardRequest)) -> Problem {
 
 #[test]
 fn each_limit_is_refused_with_its_key_and_remedy() {
-    type Change = fn(&mut CardRequest);
+    type Change = fn(&mut CardSpec);
     let cases: [(Change, &str, &str); 23] = [
         (|c| c.channels[1].tcal_max_ns = 4_083_000, "tcal_max_ns", "outside 1..4082800; choose a value in that range"),
         (|c| c.system_hz = 999_999, "system_hz", "outside 1000000..250000000"),
@@ -267,7 +267,7 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
 }
 
 /// A card that the slowest system clock can have.
-fn slow_card() -> CardRequest {
+fn slow_card() -> CardSpec {
     let mut request = card();
     request.system_hz = 1_000_000;
     for channel in &mut request.channels {
@@ -383,7 +383,7 @@ proptest::proptest! {
         system_hz in 0u64..400_000_000, clock_hz in 0u64..20_000_000, tst_ns in 0u64..12_000, bits in 0u64..60,
         filter_ns in 0u64..300, window in 0u64..800, tcal in 0u64..2_000_000, tm in 0u64..u64::MAX, cable in 0u64..200,
     ) {
-        let request = ChannelRequest {
+        let request = ChannelSpec {
             clock_hz, tst_ns, position_bits: bits, filter_ns, start_window_ns: window, tcal_max_ns: tcal,
             recovery_max_ns: tm, cable_m: cable, ..rcn_8510()
         };

@@ -14,7 +14,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use syn::parse::{Parse, ParseStream};
 use syn::visit_mut::{visit_expr_mut, VisitMut};
-use syn::{Expr, Ident, Item, Macro, Pat, Token};
+use syn::{Expr, Ident, ItemImpl, Macro, Pat, Token};
 
 /// `block.register`.
 struct Word(&'static Register);
@@ -151,9 +151,9 @@ impl VisitMut for Places {
 }
 
 /// Puts the numbers in for the names.
-pub fn resolve(kernel: &mut Item) -> syn::Result<()> {
+pub fn resolve(kernel: &mut ItemImpl) -> syn::Result<()> {
     let mut places = Places::default();
-    places.visit_item_mut(kernel);
+    places.visit_item_impl_mut(kernel);
     places.wrong.map_or(Ok(()), Err)
 }
 
@@ -164,7 +164,7 @@ mod tests {
     use syn::{parse_quote, Block};
 
     fn resolved(block: Block) -> Result<String, String> {
-        let mut kernel = parse_quote!(fn update(&mut self) #block);
+        let mut kernel = parse_quote!(impl Logic for Block { fn update(&mut self) #block });
         resolve(&mut kernel).map_err(|e| e.to_string())?;
         Ok(kernel.to_token_stream().to_string())
     }

@@ -1,12 +1,12 @@
 use super::*;
-use crate::config::TFormatRequest;
-use crate::config::{CardRequest, ChannelConfig, ChannelRequest, TriggerSources};
+use crate::config::{CardSpec, ChannelConfig, ChannelSpec, TriggerSources};
 use crate::endat::service::program::{self, step_name};
 use crate::protocol::ModeCommand;
+use crate::protocols::{Spoken, TFormatSpec};
 
 /// The card of the tests: two unlike channels, a UART of 8 cycles per bit.
 pub fn test_config() -> CardConfig {
-    let first = ChannelRequest {
+    let first = ChannelSpec {
         clock_hz: 3_125_000,
         calibration_hz: None,
         tst_ns: 2_000,
@@ -18,16 +18,16 @@ pub fn test_config() -> CardConfig {
         recovery_min_ns: 10_000,
         recovery_max_ns: 30_000,
         cable_m: 20,
-        t_format: None,
+        spoken: Spoken::Endat,
         trigger: None,
     };
-    let second = ChannelRequest {
+    let second = ChannelSpec {
         clock_hz: 2_000_000,
         command: ModeCommand::SendPosition,
         position_bits: 25,
         ..first.clone()
     };
-    let mut config = CardConfig::resolve(&CardRequest {
+    let mut config = CardConfig::resolve(&CardSpec {
         system_hz: 100_000_000,
         channels: vec![first, second],
         sample_hz: 10_000,
@@ -52,9 +52,9 @@ pub fn test_config() -> CardConfig {
 /// The same card with a T-format encoder on its second channel.
 pub fn mixed_config() -> CardConfig {
     let mut config = test_config();
-    let request = ChannelRequest {
-        t_format: Some(TFormatRequest::default()),
-        ..config.channels[1].request.clone()
+    let request = ChannelSpec {
+        spoken: Spoken::TFormat(TFormatSpec::default()),
+        ..config.channels[1].spec.clone()
     };
     config.channels[1] = ChannelConfig::resolve(&request, config.system_hz, false, 1).unwrap();
     config
@@ -92,7 +92,7 @@ fn a_t_format_channel_starts_with_its_own_numbers() {
     assert_eq!(features >> 14 & 1, 1);
     assert_eq!(features & 3, 3, "EnDat and its line delay");
     let mut alone = config.clone();
-    alone.channels.retain(|c| c.t_format.is_some());
+    alone.channels.retain(|c| !c.is_endat());
     let features = of(&alone, "capabilities") >> 16;
     assert_eq!(features & 3, 0, "no EnDat");
     assert!(blocks(&config).any(|b| b.name == "t_format"));

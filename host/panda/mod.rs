@@ -79,7 +79,7 @@ impl Column {
                 scale: match scale {
                     // Whole turns stay in the number.
                     Scale::Rotary { steps_per_turn } => 360.0 / (*steps_per_turn).max(1) as f64,
-                    Scale::Linear { .. } | Scale::TFormat => one.value,
+                    Scale::Linear { .. } | Scale::Counts { .. } => one.value,
                 },
                 unit: one.unit,
                 meaning: "Last good position",

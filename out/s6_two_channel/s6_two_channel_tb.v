@@ -697,7 +697,6 @@ module s6_two_channel_tb;
             fallen[1] = 1'b1;
             first_fall[1] = $realtime;
         end
-
     always #(CLK_NS / 2.0) clk = ~clk;
 
     function [31:0] field(input [31:0] value, input integer lsb, input integer bits);

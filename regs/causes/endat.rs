@@ -1,6 +1,9 @@
 //! Causes of EnDat frames.
 
-super::causes! {
+use super::cause::coded;
+use crate::Named;
+
+super::cause::causes! {
     NONE = 0, "none", "none";
         "The frame was good.",
         "Nothing.";
@@ -80,3 +83,6 @@ pub mod flag {
     /// Data was not high after the last bit: the frame has another length.
     pub const TAIL_LOW: u64 = 1 << 9;
 }
+
+/// All of them, under the codes of a result.
+pub const CODED: &[Named] = &coded::<{ ALL.len() }>(ALL);

@@ -2,7 +2,7 @@
 //!
 //! The code of a flag is its number plus one, and the lowest flag is the primary cause: it explains those above it.
 
-super::causes! {
+super::cause::causes! {
     NONE = 0, "none", "none";
         same;
     UNKNOWN_REQUEST = 1, "unknown_command", "unknown request";

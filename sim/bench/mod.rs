@@ -9,6 +9,7 @@ mod command_tests;
 mod lane_uart;
 mod lanes;
 mod link;
+mod other;
 mod pins;
 mod record;
 mod sampler;
@@ -22,6 +23,7 @@ pub use lane_uart::LaneUart;
 pub(crate) use lanes::bits;
 pub use lanes::LaneBench;
 pub use link::{Link, LinkTrace};
+pub use other::OtherEncoder;
 pub use pins::PinNames;
 pub use record::{ChannelResult, Cycles, Watched};
 pub use settings::ChannelSettings;
@@ -33,11 +35,11 @@ use crate::{
     line::{Conflict, Sample},
     Time,
 };
-use pins::{DataPins, Pins, TimeBase};
+use other::OtherPort;
+use pins::{Pins, TimeBase};
 use record::ResultPorts;
 use rtl_design::engine::Engine;
 use sampler::Sampler;
-use t_format::TFormatPort;
 
 struct Port {
     link: Link,
@@ -80,7 +82,7 @@ pub struct Bench<E> {
     system_hz: u64,
     cycle: u64,
     ports: Vec<Port>,
-    t_format: Vec<TFormatPort>,
+    others: Vec<OtherPort>,
     base: TimeBase,
     trigger_until: u64,
     trigger_level: bool,
@@ -101,7 +103,7 @@ impl<E: Engine> Bench<E> {
             system_hz,
             cycle: 0,
             ports: Vec::with_capacity(links.len()),
-            t_format: Vec::new(),
+            others: Vec::new(),
             base,
             trigger_until: 0,
             trigger_level: false,
@@ -128,28 +130,6 @@ impl<E: Engine> Bench<E> {
             sampler: Sampler::default(),
         });
         self.ports.len() - 1
-    }
-
-    /// Puts a T-format encoder on a set of pins; gives its number among those.
-    pub fn add_t_format(&mut self, names: &PinNames, link: TFormatLink) -> usize {
-        let ids = DataPins::find(names, self.engine.ports());
-        self.t_format.push(TFormatPort::new(link, ids));
-        self.t_format.len() - 1
-    }
-
-    /// T-format encoder `index`.
-    pub fn t_format(&self, index: usize) -> &TFormatLink {
-        &self.t_format[index].link
-    }
-
-    /// Number of T-format encoders.
-    pub fn t_format_count(&self) -> usize {
-        self.t_format.len()
-    }
-
-    /// The same, to make something wrong with it.
-    pub fn t_format_mut(&mut self, index: usize) -> &mut TFormatLink {
-        &mut self.t_format[index].link
     }
 
     /// The design looks at DATA on both edges of its clock.
@@ -357,7 +337,7 @@ impl<E: Engine> Bench<E> {
                 port.due = port.link.next_event();
             }
         }
-        for port in &mut self.t_format {
+        for port in &mut self.others {
             port.take_pins(&mut self.engine, now);
         }
         self.note_outputs(now);
@@ -365,7 +345,7 @@ impl<E: Engine> Bench<E> {
 
     /// Lets everything on the links happen up to now, and drives DATA into the design.
     fn drive_data(&mut self, now: Time) {
-        for port in &mut self.t_format {
+        for port in &mut self.others {
             port.drive_data(&mut self.engine, now);
         }
         for port in &mut self.ports {

@@ -1,12 +1,15 @@
 //! One T-format encoder at the end of one line.
 
-use super::pins::DataPins;
+use super::other::OtherEncoder;
+use super::{Bench, PinNames};
 use crate::{
     encoder::Drive,
     t_format::{Encoder, EncoderConfig},
     Time,
 };
+use endat_hdl::regs::Protocol;
 use rtl_design::engine::Engine;
+use std::any::Any;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -64,11 +67,6 @@ impl TFormatLink {
         self.trace = Some(vec![(0, true)]);
     }
 
-    /// The line at the encoder's pins, HIGH where nobody drives it; empty unless it is recorded.
-    pub fn trace(&self) -> &[(Time, bool)] {
-        self.trace.as_deref().unwrap_or_default()
-    }
-
     fn note(&mut self, time: Time) {
         let level = self.arrived != Drive::Low && self.encoder.output() != Drive::Low;
         if let Some(trace) = &mut self.trace {
@@ -98,42 +96,6 @@ impl TFormatLink {
         &mut self.encoder
     }
 
-    /// The receiver does this from `time` on.
-    fn set_receiver(&mut self, time: Time, drive: Drive) {
-        if drive != self.receiver {
-            self.receiver = drive;
-            self.to_encoder.push_back((time + self.delay, drive));
-        }
-    }
-
-    /// Lets everything happen that is due by `time`; gives DATA at the receiver's pin.
-    fn advance_to(&mut self, time: Time) -> bool {
-        let at = |event: Option<Time>| event.unwrap_or(Time::MAX);
-        // What was changed from outside acts at once.
-        self.listen(time);
-        loop {
-            let heard = at(self.to_encoder.front().map(|(t, _)| *t));
-            let acts = at(self.encoder.next_event());
-            let arrives = at(self.to_receiver.front().map(|(t, _)| *t));
-            let next = heard.min(acts).min(arrives);
-            if next > time {
-                return self.data || self.is_open;
-            }
-            if arrives == next {
-                self.data = self.to_receiver.pop_front().is_none_or(|(_, level)| level);
-                continue;
-            }
-            if heard == next {
-                if let Some((_, drive)) = self.to_encoder.pop_front() {
-                    self.hear(next, drive);
-                }
-            } else {
-                self.encoder.advance(next);
-            }
-            self.listen(next);
-        }
-    }
-
     /// What the encoder does to the line goes on its way.
     fn listen(&mut self, time: Time) {
         let level = self.encoder.output() != Drive::Low;
@@ -161,37 +123,89 @@ impl TFormatLink {
     }
 }
 
-/// A link on the pins of a design.
-pub(super) struct TFormatPort {
-    pub(super) link: TFormatLink,
-    pub(super) ids: DataPins,
-    data: Option<bool>,
+impl OtherEncoder for TFormatLink {
+    fn protocol(&self) -> Protocol {
+        Protocol::TFormat
+    }
+
+    fn set_receiver(&mut self, time: Time, drive: Drive) {
+        if drive != self.receiver {
+            self.receiver = drive;
+            self.to_encoder.push_back((time + self.delay, drive));
+        }
+    }
+
+    fn advance_to(&mut self, time: Time) -> bool {
+        let at = |event: Option<Time>| event.unwrap_or(Time::MAX);
+        // What was changed from outside acts at once.
+        self.listen(time);
+        loop {
+            let heard = at(self.to_encoder.front().map(|(t, _)| *t));
+            let acts = at(self.encoder.next_event());
+            let arrives = at(self.to_receiver.front().map(|(t, _)| *t));
+            let next = heard.min(acts).min(arrives);
+            if next > time {
+                return self.data || self.is_open;
+            }
+            if arrives == next {
+                self.data = self.to_receiver.pop_front().is_none_or(|(_, level)| level);
+                continue;
+            }
+            if heard == next {
+                if let Some((_, drive)) = self.to_encoder.pop_front() {
+                    self.hear(next, drive);
+                }
+            } else {
+                self.encoder.advance(next);
+            }
+            self.listen(next);
+        }
+    }
+
+    fn trace(&self) -> &[(Time, bool)] {
+        self.trace.as_deref().unwrap_or_default()
+    }
+
+    fn complaints(&self) -> Vec<String> {
+        let violations = self.encoder.violations().iter();
+        violations.map(ToString::to_string).collect()
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn as_any_mut(&mut self) -> &mut dyn Any {
+        self
+    }
 }
 
-impl TFormatPort {
-    pub(super) fn new(link: TFormatLink, ids: DataPins) -> Self {
-        Self {
-            link,
-            ids,
-            data: None,
-        }
+impl<E: Engine> Bench<E> {
+    /// Puts a T-format encoder on a set of pins; gives its number among those.
+    pub fn add_t_format(&mut self, names: &PinNames, link: TFormatLink) -> usize {
+        let number = self.t_format_count();
+        self.add_other(names, Box::new(link));
+        number
     }
 
-    /// Lets everything happen up to now, and drives DATA into the design.
-    pub(super) fn drive_data(&mut self, engine: &mut impl Engine, now: Time) {
-        let data = self.link.advance_to(now);
-        if self.data != Some(data) {
-            self.data = Some(data);
-            engine.set(self.ids.data_i, u128::from(data));
-        }
+    /// T-format encoder `index`.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn t_format(&self, index: usize) -> &TFormatLink {
+        (self.others_as().nth(index)).expect("a T-format encoder of that number")
     }
 
-    /// Takes the design's pins to the line.
-    pub(super) fn take_pins(&mut self, engine: &mut impl Engine, now: Time) {
-        let drive = match engine.get(self.ids.data_oe) != 0 {
-            true => Drive::level(engine.get(self.ids.data_o) != 0),
-            false => Drive::Released,
-        };
-        self.link.set_receiver(now, drive);
+    /// The same, to make something wrong with it.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn t_format_mut(&mut self, index: usize) -> &mut TFormatLink {
+        (self.others_as_mut().nth(index)).expect("a T-format encoder of that number")
+    }
+
+    /// Number of T-format encoders.
+    pub fn t_format_count(&self) -> usize {
+        self.others_as::<TFormatLink>().count()
     }
 }

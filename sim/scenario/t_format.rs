@@ -5,7 +5,7 @@ use crate::{
     t_format::{Defect, EncoderConfig},
     Time, MS, US,
 };
-use endat_hdl::regs::causes::T_FORMAT as CAUSES;
+use endat_hdl::regs::Protocol;
 use endat_hdl::t_format::{
     cause,
     port::word,
@@ -89,7 +89,7 @@ impl ExchangeReport {
         match self.cause() {
             None => "no answer",
             Some(0) => "good",
-            Some(code) => CAUSES
+            Some(code) => (Protocol::TFormat.row().coded)
                 .iter()
                 .find(|c| u64::from(c.number) == code)
                 .map_or("unknown", |c| c.name),

@@ -1,7 +1,7 @@
 //! Waveform files of a bench: VCD for any viewer, and a GTKWave layout that opens with the signals grouped.
 
 use crate::{
-    bench::{Bench, Link, TFormatLink},
+    bench::{Bench, Link, OtherEncoder},
     line::End,
     segments::{data_segments, By, Level, Segment},
     Time, NS,
@@ -71,10 +71,10 @@ pub fn write_wires(link: &Link, out: impl Write) -> io::Result<()> {
     write_scalars(&[("data", data), ("clk", clock)], None, out)
 }
 
-/// The line of a T-format link at the encoder's end, in the same way.
-pub fn write_t_format_wires(link: &TFormatLink, end: Time, out: impl Write) -> io::Result<()> {
+/// The line of an encoder of another protocol, at its end, in the same way.
+pub fn write_line(encoder: &dyn OtherEncoder, end: Time, out: impl Write) -> io::Result<()> {
     // The last bits of a reply may be without an edge.
-    write_scalars(&[("data", link.trace())], Some(end), out)
+    write_scalars(&[("data", encoder.trace())], Some(end), out)
 }
 
 /// Named wires with their changes; those of the same nanosecond in this order.
@@ -122,11 +122,11 @@ impl Wave {
                 signals: link_signals(bench.link(i), end),
             })
             .collect();
-        groups.extend((0..bench.t_format_count()).map(|i| {
-            let line = bench.t_format(i).trace().iter();
+        groups.extend(bench.others().enumerate().map(|(i, other)| {
+            let line = other.trace().iter();
             let changes = line.map(|(t, level)| (*t, Held::Level(Level::driven(*level))));
             Group {
-                name: format!("t_format{i}"),
+                name: format!("{}{i}", other.protocol().row().word),
                 signals: vec![Signal {
                     name: "data".into(),
                     kind: Kind::Bit,

@@ -40,7 +40,7 @@ fn config() -> CardConfig {
         double_edge: false,
         ..LineParts::default()
     };
-    let request = card.channels[0].request.clone();
+    let request = card.channels[0].spec.clone();
     let channel = |(index, (clock_hz, position_bits, command, cable_m))| {
         let mut request = request.clone();
         (request.clock_hz, request.position_bits) = (clock_hz, position_bits);

@@ -6,6 +6,7 @@ use super::world::World;
 use crate::tools::third;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
+use endat_driver::regs::Protocol;
 use endat_driver::regs::{self, causes::endat, service::request_state};
 use endat_driver::{
     difference, signed, Card, Error, Link, ModeCommand, Moment, Parallel, Part, Sources, Spi, Uart,
@@ -552,7 +553,7 @@ fn what_no_card_says_is_refused() {
     };
     let mut card = open(&|_| ()).unwrap();
     card.try_link().unwrap();
-    assert!(!card.facts().is_t_format(40));
+    assert_eq!(card.facts().protocol(40), Protocol::Endat);
     assert_eq!(card.calibrate(1 << 2), Err(Error::Argument));
     assert_eq!(card.read_word(0x4000), Err(Error::Argument));
     let refused = |name, word| {
@@ -566,6 +567,19 @@ fn what_no_card_says_is_refused() {
     assert_eq!(later, Error::Version { found: 0x7F });
     let told = later.to_string();
     assert!(told.contains("version 127 of the register map"), "{told}");
+}
+
+/// Catches parts of the position that are told as each other, and words of another channel.
+#[test]
+fn the_parts_of_a_t_format_position_are_told_one_by_one() {
+    for (word, told) in [(0, [false; 2]), (1, [true, false]), (2, [false, true])] {
+        let mut words = words_of(&[Part::TFormat]);
+        words[at(&regs::CARD, "protocols") as usize] = 1 << 1;
+        let parts = regs::T_FORMAT.address(regs::T_FORMAT.word("parts"), 1);
+        words[usize::from(parts)] = word;
+        let fields = opened(Memory::new(words)).read_fields(1).unwrap();
+        assert_eq!([fields.has_single_turn, fields.has_multi_turn], told);
+    }
 }
 
 /// Catches results that stand still for ever, and sources that are off, because one access in between has failed.

@@ -30,6 +30,7 @@ static void requests(const endat_card *card)
     CHECK(reply.id == ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING && reply.cause == 0, "ID %u, cause %u", reply.id, reply.cause);
     GOOD(endat_read_fields(card, T_FORMAT, &fields));
     CHECK(fields.encoder_id == 0x17 && fields.alarm == 0, "%x", fields.encoder_id);
+    CHECK(fields.has_single_turn && fields.has_multi_turn, "parts");
     IS(endat_exchange(card, T_FORMAT, 4, 0, 0, LIMIT_MS, &reply), ENDAT_ERROR_EXCHANGE);
     CHECK(reply.cause == ENDAT_CAUSE_UNKNOWN_COMMAND, "%s", endat_cause_text(reply.cause));
     IS(endat_exchange(card, T_FORMAT, 16, 0, 0, LIMIT_MS, &reply), ENDAT_ERROR_ARGUMENT);

@@ -4,6 +4,7 @@ use super::rig::Rig;
 use super::world::World;
 use endat_driver::regs::causes::{self, t_format as cause};
 use endat_driver::regs::t_format::request;
+use endat_driver::regs::Protocol;
 use endat_driver::{Card, Error, TFormatSettings, Uart};
 use endat_gen::config::{parse, preset, Project};
 
@@ -52,7 +53,11 @@ fn the_rust_driver_has_the_t_format_encoder() {
     assert_eq!((reply.id, reply.alarm), (request::EVERYTHING, 0));
     let fields = card.read_fields(T_FORMAT).unwrap();
     assert_eq!((fields.encoder_id, fields.alarm), (0x17, 0));
-    let unknown = causes::number(cause::UNKNOWN_REQUEST as u8, true);
+    assert!(
+        fields.has_single_turn && fields.has_multi_turn,
+        "{fields:?}"
+    );
+    let unknown = causes::number(cause::UNKNOWN_REQUEST as u8, Protocol::TFormat);
     let refused = card.exchange(T_FORMAT, 4, 0, 0, LIMIT_MS);
     assert_eq!(refused, Err(Error::Exchange { cause: unknown }));
     let told = refused.unwrap_err().to_string();

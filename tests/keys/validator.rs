@@ -9,6 +9,7 @@ use endat_gen::campaign::configurations::{mutated, valid};
 use endat_gen::config::keys::{self, Key, Kind, Usual, CHANNELS, KEYS};
 use endat_gen::config::{parse_any, PRESETS, RECEIVER_PRESETS};
 use endat_gen::json_schema;
+use endat_hdl::regs::Protocol;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -190,7 +191,7 @@ fn wrong_cards() -> Vec<(String, String, Table)> {
             let speaks = channel.get("protocol").and_then(Value::as_str);
             let form = match speaks {
                 _ if is_receiver => keys::RECEIVER_FORM,
-                Some("t_format") => keys::T_FORMAT_FORM,
+                Some("t_format") => keys::form(Protocol::TFormat),
                 _ => keys::ENDAT_FORM,
             };
             if key.tables.contains(&CHANNELS) && key.forms & form == 0 {

@@ -1,6 +1,7 @@
 //! A card with a stream, its encoders, and a host at its UART that sends and hears at the same time.
 
 use super::rig::Set;
+use endat_hdl::protocols::Spoken;
 use endat_hdl::{
     card::Card,
     config::*,
@@ -41,7 +42,7 @@ pub struct Line {
 
 /// A card of two channels with a stream that pushes from reset on.
 pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> CardConfig {
-    let first = ChannelRequest {
+    let first = ChannelSpec {
         clock_hz: 6_000_000,
         calibration_hz: None,
         tst_ns: 2_000,
@@ -53,14 +54,14 @@ pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> Ca
         recovery_min_ns: 10_000,
         recovery_max_ns: 30_000,
         cable_m: 20,
-        t_format: None,
+        spoken: Spoken::Endat,
         trigger: None,
     };
-    let second = ChannelRequest {
+    let second = ChannelSpec {
         position_bits: 37,
         ..first.clone()
     };
-    CardConfig::resolve(&CardRequest {
+    CardConfig::resolve(&CardSpec {
         system_hz,
         channels: vec![first, second],
         sample_hz,

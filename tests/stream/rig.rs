@@ -3,6 +3,7 @@
 use crate::three_way::Stimulus;
 use crc::{Crc, CRC_16_IBM_3740};
 use endat_hdl::card::stream::{buffer::SetParts, channel::SetChannel, Stream};
+use endat_hdl::regs::Protocol;
 use rtl_design::elaborate::elaborate;
 use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
@@ -184,7 +185,7 @@ impl Rig {
             set: (0..channels)
                 .map(|n| {
                     Named::new(
-                        SetChannel::new(n, true, false, SetParts::default()),
+                        SetChannel::new(n, Protocol::Endat, false, SetParts::default()),
                         "set_channel",
                     )
                 })

@@ -4,6 +4,7 @@ use super::rig::{Access, Channel, Rig};
 use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::card::stream::{buffer::SetParts, channel::SetChannel, Stream};
+use endat_hdl::regs::Protocol;
 use rtl_design::elaborate::elaborate;
 use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
@@ -71,7 +72,7 @@ fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
     assert!(pushed.contains(&0x11), "the head of a set");
     assert!(recording.output("take_set").iter().sum::<u128>() > 5);
 
-    let mut block = SetChannel::new(0, true, false, SetParts::default());
+    let mut block = SetChannel::new(0, Protocol::Endat, false, SetParts::default());
     block.connect_all();
     let design = elaborate(&block, "set_channel").unwrap();
     let mut kernel = kernel_engine!(block; clock;

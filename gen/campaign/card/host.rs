@@ -15,6 +15,7 @@ use endat_hdl::regs::{
 };
 use endat_host::result::of_burst;
 use endat_host::stream::SampleSet;
+use endat_regs::Protocols;
 use std::collections::VecDeque;
 
 /// System clock cycles of a bit of the link, and of a byte.
@@ -221,7 +222,7 @@ impl Host {
     async fn read_results(&mut self) -> Option<Vec<Reading>> {
         let count = result_words(CHANNELS, true) as usize;
         let words = self.read(2, RESULT_BASE, count).await?;
-        Some(of_burst(&words, CHANNELS, true, 0))
+        Some(of_burst(&words, CHANNELS, true, Protocols::ENDAT))
     }
 
     async fn read_stream(&mut self) {

@@ -4,6 +4,7 @@
 use super::{CHANNELS, POSITION_BITS};
 use crc::{Crc, CRC_16_IBM_3740};
 use endat_driver::{Reading, RESULT_WORDS};
+use endat_regs::Protocol;
 use endat_sim::bench::LaneBench;
 use rtl_design::engine::PortId;
 
@@ -147,7 +148,7 @@ impl Controller {
         self.count = is_head.then_some(count);
         std::array::from_fn(|channel| {
             let all = &words[first(channel)..][..CHANNEL_WORDS];
-            let reading = Reading::new(all, false);
+            let reading = Reading::new(all, Protocol::Endat);
             let before = self.sequences[channel];
             let is_its = all[RESULT_WORDS] >> 16 == (channel as u32) << 8;
             if !(is_head && is_right(channel) && is_its) {

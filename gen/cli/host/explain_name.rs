@@ -6,12 +6,37 @@ use endat_host::causes;
 use endat_host::did_you_mean::closest;
 use endat_host::feed::NO_CAUSES;
 use endat_host::registers::{Access, Block, Field, Register, Values};
-use endat_regs::causes::{ENDAT, T_FORMAT};
-use endat_regs::{Named, BLOCKS};
+use endat_regs::{Named, Protocol, BLOCKS};
 use std::fmt::Write;
 
 /// Causes of EnDat frames, which the services count.
 const SERVICE_CAUSES: std::ops::Range<u32> = 0..endat_hdl::endat::transaction::cause::COUNT as u32;
+
+/// Causes of all protocols; what one shares with EnDat is told once.
+fn own_causes() -> impl Iterator<Item = (&'static Named, Protocol)> {
+    let of = |protocol: &Protocol| {
+        let protocol = *protocol;
+        let own = move |c: &&Named| {
+            protocol.row().causes[..]
+                .iter()
+                .any(|row| row.name == c.name && row.advice.is_some())
+        };
+        (protocol.row().coded.iter().filter(own)).map(move |c| (c, protocol))
+    };
+    Protocol::ALL.iter().flat_map(of)
+}
+
+/// Codes of the same cause in other protocols, where they are others.
+fn elsewhere(cause: &'static Named, protocol: Protocol) -> impl Iterator<Item = String> {
+    let others = Protocol::ALL
+        .iter()
+        .filter(move |other| **other != protocol);
+    let same = |other: &Protocol| {
+        let found = other.row().coded.iter().find(|c| c.name == cause.name)?;
+        (found.number != cause.number).then(|| format!(", of {} {}", other.name(), found.number))
+    };
+    others.filter_map(same)
+}
 
 /// Everything called `name`: keys of a configuration, causes, registers, fields, values, with or without block and channel in front.
 pub fn text(typed: &str) -> Result<String, GenError> {
@@ -21,17 +46,13 @@ pub fn text(typed: &str) -> Result<String, GenError> {
     // Behind everything that has the name itself.
     let mut values = String::new();
     let is_meant = |c: &&Named| c.name == name || c.number.to_string() == name;
-    let endat = ENDAT.iter().map(|c| (c, ""));
-    // What both have is told once.
-    let own = |c: &&Named| causes::of_code(c.number as u8, true) >= causes::CODES;
-    let t_format = T_FORMAT.iter().filter(own).map(|c| (c, " of T-format"));
-    for (cause, of) in endat.chain(t_format).filter(|(c, _)| is_meant(c)) {
+    for (cause, protocol) in own_causes().filter(|(c, _)| is_meant(c)) {
         let [means, then] = causes::advice(cause.name).unwrap_or([cause.meaning, ""]);
-        let other = T_FORMAT.iter().find(|c| c.name == cause.name);
-        let other = match other.filter(|c| c.number != cause.number) {
-            Some(other) => format!(", of T-format {}", other.number),
-            None => String::new(),
+        let of = match protocol {
+            Protocol::Endat => String::new(),
+            other => format!(" of {}", other.name()),
         };
+        let other: String = elsewhere(cause, protocol).collect();
         let _ = writeln!(
             text,
             "cause {}{of}{other} ({}): {}\n  {means}\n  {then}",
@@ -90,8 +111,8 @@ pub fn text(typed: &str) -> Result<String, GenError> {
                 if parts.len() == 1 && field.name != "cause" {
                     let own = &full(block, register);
                     value_text(&mut values, name, own, field, field.values);
-                    if let Some(others) = field.t_format_values {
-                        let own = format!("a T-format channel's {own}");
+                    for (protocol, others) in field.values_elsewhere() {
+                        let own = format!("a {} channel's {own}", protocol.name());
                         value_text(&mut values, name, &own, field, others);
                     }
                 }
@@ -194,8 +215,8 @@ fn field_text(text: &mut String, field: &Field) {
         field.meaning
     );
     values_text(text, field.values);
-    if let Some(values) = field.t_format_values {
-        text.push_str("         on a T-format channel:\n");
+    for (protocol, values) in field.values_elsewhere() {
+        let _ = writeln!(text, "         on a {} channel:", protocol.name());
         values_text(text, values);
     }
 }

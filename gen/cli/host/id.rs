@@ -5,9 +5,9 @@ use super::{long, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::card::Identity;
+use endat_host::name_plate::Told;
 use endat_host::name_plate::{step_name, NamePlate};
-use endat_host::t_format::TFormatState;
-use endat_regs::{Named, Part};
+use endat_regs::{Named, Part, Protocol};
 use serde_json::{json, Value};
 use std::fmt::Write;
 
@@ -29,18 +29,18 @@ pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     card.wait_until_initialised(long).map_err(told)?;
     let mut encoders = Vec::new();
     for channel in 0..identity.channels {
-        encoders.push(match identity.is_t_format(channel) {
-            true => Encoder::TFormat(card.t_format_state(channel).map_err(told)?),
-            false if reads_plates => {
+        encoders.push(match card.ask_encoder(channel).map_err(told)? {
+            Some(reply) => Encoder::Other(identity.protocol(channel), reply),
+            None if reads_plates => {
                 let plate = card.name_plate(channel).map_err(told)?;
                 Encoder::Endat(plate.into())
             }
-            false => Encoder::NotRead,
+            None => Encoder::NotRead,
         });
     }
     let is_good = encoders.iter().all(|encoder| match encoder {
         Encoder::Endat(plate) => plate.initialised,
-        Encoder::TFormat(reply) => reply.is_ok(),
+        Encoder::Other(_, reply) => reply.is_ok(),
         Encoder::NotRead => true,
     });
     let stdout = if arguments.json {
@@ -60,8 +60,8 @@ enum Encoder {
     NotRead,
     /// An EnDat encoder.
     Endat(Box<NamePlate>),
-    /// A T-format encoder, which has no name plate: what it has told, or why it has not.
-    TFormat(Result<TFormatState, String>),
+    /// One of another protocol, which has no name plate: what it has told, or why it has not.
+    Other(Protocol, Result<Told, String>),
 }
 
 fn version(identity: &Identity) -> String {
@@ -94,24 +94,35 @@ fn as_text(identity: &Identity, encoders: &[Encoder]) -> String {
                 let plate = plate_text(plate, identity.system_hz);
                 let _ = write!(text, "\nencoder {channel}\n{plate}");
             }
-            Encoder::TFormat(reply) => {
-                let _ = write!(text, "\nencoder {channel}\n{}", t_format_text(reply));
+            Encoder::Other(protocol, reply) => {
+                let reply = other_text(*protocol, reply);
+                let _ = write!(text, "\nencoder {channel}\n{reply}");
             }
         }
     }
     text
 }
 
-/// What a T-format encoder tells of itself, in the form of a name plate.
-pub fn t_format_text(reply: &Result<TFormatState, String>) -> String {
-    let told = match reply {
-        Ok(state) => format!(
-            "kind              0x{:02X} (ENID)\n  status, alarm     0x{:02X}, 0x{:02X}",
-            state.encoder_id, state.status, state.alarm
-        ),
-        Err(why) => format!("does not tell     {why}"),
+/// What an encoder without a name plate tells of itself, in the form of one.
+pub fn other_text(protocol: Protocol, reply: &Result<Told, String>) -> String {
+    let name = protocol.name();
+    let mut text = format!("  type              {name}, which has no name plate\n");
+    let lines = match reply {
+        Ok(told) => told.lines.clone(),
+        Err(why) => vec![("does not tell", why.clone())],
     };
-    format!("  type              T-format, which has no name plate\n  {told}\n")
+    for (head, says) in lines {
+        let _ = writeln!(text, "  {head:<17} {says}");
+    }
+    text
+}
+
+fn other_json(reply: &Result<Told, String>) -> Value {
+    let mut all = json!({ "error": reply.as_ref().err() });
+    for (name, number) in reply.iter().flat_map(|told| &told.fields) {
+        all[*name] = json!(number);
+    }
+    all
 }
 
 /// Name of a step.
@@ -260,16 +271,7 @@ fn as_json(identity: &Identity, encoders: &[Encoder]) -> Value {
         let (protocol, told) = match encoder {
             Encoder::NotRead => ("endat", json!({ "initialised": null })),
             Encoder::Endat(p) => ("endat", plate(p)),
-            Encoder::TFormat(Ok(state)) => (
-                "t_format",
-                json!({
-                    "encoder_id": state.encoder_id,
-                    "status": state.status,
-                    "alarm": state.alarm,
-                    "error": null,
-                }),
-            ),
-            Encoder::TFormat(Err(why)) => ("t_format", json!({ "error": why })),
+            Encoder::Other(protocol, reply) => (protocol.row().word, other_json(reply)),
         };
         let mut all = json!({ "channel": channel, "protocol": protocol });
         if let (Value::Object(all), Value::Object(told)) = (&mut all, told) {

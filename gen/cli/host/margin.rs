@@ -8,7 +8,7 @@ use crate::number::number_if;
 use clap::Args;
 use endat_host::registers::Place;
 use endat_host::HostError;
-use endat_regs::Part;
+use endat_regs::{Part, Protocol};
 use endat_sim::diagram::{edges_svg, is_drawing, Edges};
 use serde_json::json;
 use std::path::PathBuf;
@@ -41,9 +41,11 @@ const WAIT: Duration = Duration::from_secs(20);
 /// Refuses a channel whose margin the card does not measure; `what` is how the user named it.
 pub fn needs(what: &str, card: &AnyCard, channel: usize) -> Result<(), HostError> {
     let why = match channel < card.identity().channels {
-        true if !card.identity().is_t_format(channel) => None,
-        true => Some("speaks T-format"),
-        false => Some("the card has none"),
+        true => match card.identity().protocol(channel) {
+            Protocol::Endat => None,
+            other => Some(format!("speaks {}", other.name())),
+        },
+        false => Some("the card has none".into()),
     };
     if let Some(why) = why {
         return Err(HostError::Name(format!(

@@ -29,7 +29,9 @@ pub fn shown(reading: &Reading, scale: &Scale) -> String {
     let units = scale.convert(reading.position);
     let value = format!("{:.*} {}", scale.digits(), units.value, units.unit);
     match units.turns {
-        Some(turns) if *scale == Scale::TFormat => format!("single {value}, multi {turns}"),
+        Some(turns) if matches!(scale, Scale::Counts { .. }) => {
+            format!("single {value}, multi {turns}")
+        }
         Some(turns) if turns > 0 => format!("{value} + {turns} turns"),
         _ => value,
     }

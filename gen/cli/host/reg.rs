@@ -5,7 +5,7 @@ use super::{told, AnyCard, PortArgs};
 use crate::error::GenError;
 use crate::number::number;
 use clap::{Args, Subcommand};
-use endat_host::registers::{Access, Field, Limits, Named, Place, Values};
+use endat_host::registers::{Access, Field, Named, Place, Values};
 use endat_host::HostError;
 use endat_regs::BLOCKS;
 use serde_json::{json, Value};
@@ -98,8 +98,8 @@ type Seen = (&'static Field, u32, Option<String>);
 /// What a place says.
 fn looked_at(card: &mut AnyCard, place: &Place) -> Result<(u32, Vec<Seen>), HostError> {
     let value = card.read(place)?;
-    let is_t_format = card.identity().is_of_t_format(place);
-    let seen = |f: &'static Field, word| (f, f.of(word), f.told(word, is_t_format));
+    let protocol = card.identity().protocol_of(place);
+    let seen = |f: &'static Field, word| (f, f.of(word), f.told(word, protocol));
     let fields = match place.field {
         Some(field) => vec![seen(field, value << field.lsb)],
         None => place
@@ -197,7 +197,7 @@ fn value_of(place: &Place, text: &str, force: bool) -> Result<u32, GenError> {
         return Ok(value);
     }
     // Where the map has limits, they are what is told of every number outside, whether it fits the bits or not.
-    let limited = |f: &&Field| f.limits != Limits::ANY && !force;
+    let limited = |f: &&Field| f.is_limited() && !force;
     let field = place.field.filter(|f| !limited(f));
     let most = field.map_or(u32::MAX, |f| f.mask() >> f.lsb);
     number("value", text, 0..=most.into()).map(|n| n as u32)

@@ -2,10 +2,12 @@
 
 use crate::board::Board;
 use crate::config::keys::{self, Key, TABLES};
-use crate::config::words::{RECEIVER_BUS, T_FORMAT};
+use crate::config::words::RECEIVER_BUS;
 use crate::form::key::Kind;
 use crate::json_schema::plain;
+use crate::t_format::keys::BIT_RATE;
 use endat_hdl::card::bus::HostBus;
+use endat_regs::Protocol;
 use std::collections::BTreeMap;
 
 /// Answers by the name of their question, as they were typed.
@@ -64,13 +66,19 @@ pub fn is_receiver(answers: &Answers) -> bool {
     is(answers, "bus", RECEIVER_BUS)
 }
 
-pub fn is_t_format(answers: &Answers) -> bool {
-    is(answers, "protocol", T_FORMAT)
+/// Which keys there are: those of a receiver, or of a channel that speaks what was answered.
+pub fn form_of(answers: &Answers) -> u8 {
+    let spoken = |p: &&Protocol| is(answers, "protocol", p.row().word);
+    match Protocol::ALL.iter().find(spoken) {
+        _ if is_receiver(answers) => keys::RECEIVER_FORM,
+        Some(protocol) => keys::form(*protocol),
+        None => keys::ENDAT_FORM,
+    }
 }
 
 /// An EnDat channel of a card.
 fn is_endat(answers: &Answers) -> bool {
-    !is_t_format(answers) && !is_receiver(answers)
+    form_of(answers) == keys::ENDAT_FORM
 }
 
 fn is_card(answers: &Answers) -> bool {
@@ -116,7 +124,7 @@ pub static QUESTIONS: &[Question] = &[
         name: "protocol",
         of: Of::Key(&keys::PROTOCOL, keys::CHANNELS),
         is_asked: |_| true,
-        usual: |_| vec![crate::config::words::ENDAT.into(), T_FORMAT.into()],
+        usual: |_| Protocol::ALL.iter().map(|p| p.row().word.into()).collect(),
     },
     Question {
         name: "bus",
@@ -186,9 +194,9 @@ pub static QUESTIONS: &[Question] = &[
     },
     Question {
         name: "bit-hz",
-        of: Of::Key(&keys::BIT_RATE, keys::CHANNELS),
-        is_asked: |answers| is_t_format(answers) || is_receiver(answers),
-        usual: |_| numbers(&[keys::BIT_RATE.usual_number()]),
+        of: Of::Key(&BIT_RATE, keys::CHANNELS),
+        is_asked: |answers| BIT_RATE.forms & form_of(answers) != 0,
+        usual: |_| numbers(&[BIT_RATE.usual_number()]),
     },
     Question {
         name: "sample-hz",

@@ -1,14 +1,9 @@
 //! The text of a configuration: what was answered, and beside it every key that was not asked for, with what counts without it.
 
-use super::questions::{
-    has_board, has_uart, is_receiver, is_t_format, Answers, Of, NOTHING, QUESTIONS,
-};
+use super::questions::{form_of, has_board, has_uart, Answers, Of, NOTHING, QUESTIONS};
 use crate::config::base::takes;
 use crate::config::grouped;
-use crate::config::keys::{
-    self, Key, Kind, Usual, CHANNELS, COMMON, ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES,
-    T_FORMAT_FORM,
-};
+use crate::config::keys::{self, Key, Kind, Usual, CHANNELS, COMMON, ENDAT_FORM, KEYS, TABLES};
 use crate::error::GenError;
 use crate::form::key::head;
 use crate::json_schema::plain;
@@ -146,11 +141,7 @@ fn table(text: &mut String, answers: &Answers, table: &str, forms: u8, is_told: 
 
 /// The whole text.
 pub fn written(answers: &Answers) -> String {
-    let form = match (is_receiver(answers), is_t_format(answers)) {
-        (true, _) => RECEIVER_FORM,
-        (_, true) => T_FORMAT_FORM,
-        (_, false) => ENDAT_FORM,
-    };
+    let form = form_of(answers);
     let mut text = comment(
         "Begun by `endat-gen new`. Lines that begin with # may be left out: without a key counts what is called its default. \
          `endat-gen explain --config FILE` says what becomes of it all, and `endat-gen explain KEY` more of a key.",
@@ -162,7 +153,7 @@ pub fn written(answers: &Answers) -> String {
     let is_here = |table: &str| match table {
         "link" => has_uart(answers),
         "board" | "pins" => has_board(answers),
-        // A channel that speaks T-format has nothing of these.
+        // A channel that speaks another protocol has nothing of these.
         COMMON | "service" | "line" => form == ENDAT_FORM,
         _ => true,
     };

@@ -48,7 +48,12 @@ impl CardCore {
                 Stream::new(config.stream.fifo_bytes, n.channels, collect, push, n.parts)
             }),
             set: numbered(n.sets, |i| {
-                SetChannel::new(i, is_endat(i), n.own_triggers != 0, n.parts)
+                SetChannel::new(
+                    i,
+                    config.channels[i].protocol(),
+                    n.own_triggers != 0,
+                    n.parts,
+                )
             }),
             set_byte: each(n.sets + n.streams),
             set_owes: each(n.sets + n.streams),

@@ -16,7 +16,7 @@ pub(super) fn blink_bit(system_hz: u64, hz: u64) -> u64 {
 /// What decides whether a channel takes a trigger, of so many channels.
 pub(super) fn channel_triggers(card: &CardConfig, channels: usize) -> Vec<ChannelTrigger> {
     let of = |channel: &ChannelConfig| {
-        let own = channel.request.trigger.unwrap_or_default();
+        let own = channel.spec.trigger.unwrap_or_default();
         ChannelTrigger::new(own.ignored(), own.skip(), !own.enabled)
     };
     card.channels.iter().take(channels).map(of).collect()
@@ -80,7 +80,7 @@ pub fn services(card: &CardConfig) -> usize {
 pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
     let channel = &card.channels[index];
     if !channel.is_endat() {
-        return EncoderPort::t_format(index < served_channels(card));
+        return EncoderPort::speaking(channel.protocol(), index < served_channels(card));
     }
     let service = card.service.requests.then_some(service);
     EncoderPort::served(
@@ -96,7 +96,7 @@ pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> E
 pub fn bare_port(card: &CardConfig) -> EncoderPort {
     let (channel, service) = (&card.channels[0], service_times(card));
     if !channel.is_endat() {
-        return EncoderPort::t_format(false);
+        return EncoderPort::speaking(channel.protocol(), false);
     }
     EncoderPort::with_line(
         times(card, channel),

@@ -285,19 +285,18 @@ impl Logic for RegisterBank {
             & self.front.in_range.val()
             & !self.front.word_address.val().get_bit(10)
             & self.front.word_address.val().get_bit(9);
-        // T-format ports: 8 words each, from 0x0C0 on, in the same way.
-        self.t_format_page.next = self.has_t_format.val()
+        // Ports of other protocols than EnDat: 8 words each, from 0x0C0 on, in the same way.
+        self.port_page.next = self.has_others.val()
             & self.low_page.val()
             & !self.front.word_address.val().get_bit(8)
             & self.front.word_address.val().get_bits::<2>(6).all();
-        self.word_page.next =
-            self.service_page.val() | self.line_page.val() | self.t_format_page.val();
+        self.word_page.next = self.service_page.val() | self.line_page.val() | self.port_page.val();
         self.service.service_line.next = self.line_selected.q.val();
         self.service_channel.next = self.front.word_address.val().get_bits::<3>(7);
         if self.line_page.val() {
             self.service_channel.next = self.front.word_address.val().get_bits::<3>(6);
         }
-        if self.t_format_page.val() {
+        if self.port_page.val() {
             self.service_channel.next = self.front.word_address.val().get_bits::<3>(3);
         }
         self.selected.next = 0.into();
@@ -334,12 +333,12 @@ impl Logic for RegisterBank {
     /// The word behind a port.
     fn reach_service(&mut self) {
         if !self.busy.val() {
-            self.line_selected.d.next = self.line_page.val() | self.t_format_page.val();
+            self.line_selected.d.next = self.line_page.val() | self.port_page.val();
             self.service_skip.d.next = !self.word_page.val();
             // A channel has the words of its own protocol only.
             self.service_selected.d.next = self.selected.val() & self.endat_channels.val();
-            if self.t_format_page.val() {
-                self.service_selected.d.next = self.selected.val() & self.t_format_channels.val();
+            if self.port_page.val() {
+                self.service_selected.d.next = self.selected.val() & self.other_channels.val();
             }
         }
         self.service_first.d.next = self.starts.val();

@@ -13,9 +13,8 @@
 //! one that is not fresh, with the cause of an upset.
 
 use super::buffer::SetParts;
-use crate::endat::transaction::cause;
 use crate::several::each;
-use crate::t_format;
+use endat_regs::Protocol;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -99,8 +98,8 @@ pub struct SetChannel {
 }
 
 impl SetChannel {
-    /// The place of channel `channel`, which speaks EnDat or T-format, for late results too if `takes_late`, and for what else sets have.
-    pub fn new(channel: usize, is_endat: bool, takes_late: bool, parts: SetParts) -> Self {
+    /// The place of channel `channel`, which speaks this protocol, for late results too if `takes_late`, and for what else sets have.
+    pub fn new(channel: usize, protocol: Protocol, takes_late: bool, parts: SetParts) -> Self {
         let (runs, infos) = (usize::from(parts.runs), usize::from(parts.additional_data));
         Self::from_parts(SetChannelParts {
             take_run: each(runs),
@@ -114,15 +113,9 @@ impl SetChannel {
             info_byte: each(infos),
             number: Constant::new((channel as u64 + 1).into()),
             takes_late: Constant::new(takes_late),
-            has_crc: Constant::new(is_endat),
+            has_crc: Constant::new(protocol == Protocol::Endat),
             taken_bit: Constant::new((1u64 << 5).into()),
-            upset_cause: Constant::new(
-                match is_endat {
-                    true => cause::UPSET,
-                    false => t_format::cause::UPSET,
-                }
-                .into(),
-            ),
+            upset_cause: Constant::new(protocol.code_of("upset").into()),
             _runs: runs,
             _infos: infos,
         })

@@ -124,7 +124,7 @@ fn what_a_trigger_must_not_send_is_refused() {
         rig.uut.request_id.next = u64::from(id).into();
         rig.trigger();
         rig.us(30);
-        let is_sent = Request::from_id(id).is_some_and(crate::config::is_triggered);
+        let is_sent = Request::from_id(id).is_some_and(crate::t_format::asked::is_triggered);
         assert_eq!(!rig.falls.is_empty(), is_sent, "{id}");
         let cause = match is_sent {
             true => cause::NO_ANSWER,

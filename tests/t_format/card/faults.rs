@@ -1,6 +1,7 @@
 //! What can go wrong on a T-format channel has its cause in the card's result, and leaves the other channel alone.
 
 use super::*;
+use endat_hdl::regs::Protocol;
 use endat_hdl::t_format::cause;
 use endat_sim::t_format::Defect;
 
@@ -37,7 +38,10 @@ fn every_cause_of_an_encoder_is_told_by_its_code() {
         assert_eq!(bad.cause, code, "{defect:?}");
         assert_eq!(bad.fresh, is_harmless, "{defect:?}");
         assert_eq!(bad.position == before.position, !is_harmless, "{defect:?}");
-        let name = endat_host::causes::name(endat_host::causes::of_code(bad.cause as u8, true));
+        let name = endat_host::causes::name(endat_host::causes::of_code(
+            bad.cause as u8,
+            Protocol::TFormat,
+        ));
         assert_eq!(name, cause::ALL[code as usize].name);
         assert!(endat_host::causes::advice(name).is_some());
         let encoder = rig.master.bench.t_format_mut(0).encoder_mut();

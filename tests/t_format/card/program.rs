@@ -3,6 +3,7 @@
 use endat_gen::cli;
 use endat_gen::config::{parse, preset};
 use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
+use endat_hdl::regs::Protocol;
 use endat_host::feed::Feed;
 use endat_host::{Bridge, Card};
 use std::collections::VecDeque;
@@ -40,7 +41,7 @@ fn the_host_commands_know_what_a_t_format_channel_is() {
 
     let param = run(&["param", "read", "0xA1", "0x0D", "--channel", "1"]);
     assert_eq!(param.exit_code, 2);
-    assert!(param.messages[0].contains("channel 1: mode commands: the channel speaks T-format, which has none; its requests go through t_format1.send and .answer"), "{param:?}");
+    assert!(param.messages[0].contains("channel 1: mode commands: the channel speaks T-format, which has none; its requests go through the words of t_format1 (`endat-gen explain t_format`)"), "{param:?}");
     for (name, text) in [
         (
             "t_format0",
@@ -121,7 +122,8 @@ fn the_stream_of_a_mixed_card_has_both_positions() {
     let project = parse("mixed.toml", &text).unwrap();
     let virtual_card = VirtualCard::new(&project, &VirtualConfig::default()).unwrap();
     let mut card = Card::find(Bridge::new(virtual_card)).unwrap();
-    assert!(card.identity().is_t_format(1) && !card.identity().is_t_format(0));
+    let protocols = [0, 1].map(|n| card.identity().protocol(n));
+    assert_eq!(protocols, [Protocol::Endat, Protocol::TFormat]);
     let mut feed = Feed::begin(&mut card, false).unwrap();
     let mut rows = VecDeque::new();
     while rows.len() < 300 {

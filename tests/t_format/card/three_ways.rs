@@ -4,6 +4,7 @@ use super::shaft;
 use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::encoder_port::EncoderPort;
+use endat_hdl::regs::Protocol;
 use endat_hdl::t_format::cause;
 use endat_hdl::t_format::port::word;
 use endat_sim::bench::{Bench, PinNames, TFormatLink};
@@ -16,7 +17,7 @@ use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 
 fn block() -> EncoderPort {
-    let mut block = EncoderPort::t_format(false);
+    let mut block = EncoderPort::speaking(Protocol::TFormat, false);
     block.connect_all();
     block
 }

@@ -4,7 +4,7 @@ use super::super::{place, read, told, AnyCard};
 use crate::error::GenError;
 use endat_driver::Reading;
 use endat_host::registers::Place;
-use endat_regs::Part;
+use endat_regs::{Part, Protocol};
 use serde_json::{json, Value};
 
 /// Frames of a channel since they were cleared.
@@ -76,7 +76,7 @@ impl Watcher {
         let named = |is_there: bool, name: &str| is_there.then(|| place(card, name)).transpose();
         let identity = card.identity();
         // Of the first EnDat channel; the others have the same words.
-        let first = (0..identity.channels).find(|n| !identity.is_t_format(*n));
+        let first = (0..identity.channels).find(|n| identity.protocol(*n) == Protocol::Endat);
         let Some(n) = first else {
             return Ok(Self::default());
         };
@@ -121,7 +121,7 @@ impl Watcher {
             rate_hz: before.and_then(|before| rate(before, reading, system_hz)),
             ..Seen::default()
         };
-        if card.identity().is_t_format(channel) {
+        if card.identity().protocol(channel) != Protocol::Endat {
             return Ok(seen);
         }
         let ns = |cycles: u16| f64::from(cycles) * 1e9 / system_hz;

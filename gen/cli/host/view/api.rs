@@ -227,12 +227,12 @@ impl Api {
         let identity = &state.identity;
         let channels = state.scales.iter().enumerate().map(|(n, scale)| {
             let plate = state.plates[n].as_ref();
-            let text = match (plate, state.t_format[n].as_ref()) {
+            let text = match (plate, state.others[n].as_ref()) {
                 (Some(plate), _) => Some(id::plate_text(plate, identity.system_hz)),
-                (None, told) => told.map(id::t_format_text),
+                (None, told) => told.map(|told| id::other_text(identity.protocol(n), told)),
             };
             json!({
-                "protocol": if identity.is_t_format(n) { "T-format" } else { "EnDat" },
+                "protocol": identity.protocol(n).name(),
                 "unit": scale.convert(0).unit,
                 "digits": scale.digits(),
                 "wraps_at": scale.wraps_at(),

@@ -11,8 +11,8 @@ use endat_host::card::Identity;
 use endat_host::feed::Row;
 use endat_host::motion::ranges;
 use endat_host::name_plate::NamePlate;
+use endat_host::name_plate::Told;
 use endat_host::owner::{Handle, Jobs, Losses};
-use endat_host::t_format::TFormatState;
 use endat_host::transport::LinkState;
 use endat_host::units::Scale;
 use endat_host::{HostError, Transport};
@@ -35,8 +35,8 @@ const AGAIN: Duration = Duration::from_secs(1);
 /// The rate is that of so long.
 const RATE_OVER_S: f64 = 0.5;
 
-/// What a T-format encoder has told, or why it has not.
-type Told = Result<TFormatState, String>;
+/// What an encoder without a name plate has told, or why it has not.
+type Asked = Result<Told, String>;
 
 /// A recording that a page has begun.
 pub struct Recording {
@@ -55,8 +55,8 @@ pub struct State {
     pub identity: Identity,
     /// Name plates of its encoders.
     pub plates: Vec<Option<NamePlate>>,
-    /// What those of them that speak T-format have told, or why they have not.
-    pub t_format: Vec<Option<Told>>,
+    /// What those that have none have told, or why they have not.
+    pub others: Vec<Option<Asked>>,
     /// What a measuring step is.
     pub scales: Vec<Scale>,
     /// Rows until now.
@@ -87,7 +87,7 @@ impl State {
     fn new(
         session: u64,
         identity: Identity,
-        (plates, t_format): (Vec<Option<NamePlate>>, Vec<Option<Told>>),
+        (plates, others): (Vec<Option<NamePlate>>, Vec<Option<Asked>>),
         scales: Vec<Scale>,
     ) -> Self {
         let judge = Judge {
@@ -108,7 +108,7 @@ impl State {
             recent: VecDeque::new(),
             identity,
             plates,
-            t_format,
+            others,
             scales,
         }
     }
@@ -237,14 +237,11 @@ fn begin(jobs: &Jobs, session: u64) -> Result<State, HostError> {
         owner.card.settle(|| ())?;
         let identity = *owner.card.identity();
         let plates = owner.card.name_plates()?;
-        let mut t_format = Vec::new();
-        for channel in 0..identity.channels {
-            let card = &mut owner.card;
-            let told = identity.is_t_format(channel);
-            t_format.push(told.then(|| card.t_format_state(channel)).transpose()?);
-        }
+        let channels = 0..identity.channels;
+        let others = channels.map(|n| owner.card.ask_encoder(n));
+        let others = others.collect::<Result<_, _>>()?;
         owner.begin(false)?;
-        let told = (plates, t_format);
+        let told = (plates, others);
         Ok(State::new(session, identity, told, owner.scales.clone()))
     })
 }
@@ -370,6 +367,7 @@ impl Shared {
 mod tests {
     use super::*;
     use endat_host::feed::Cell;
+    use endat_regs::Protocols;
 
     /// Catches a recording that has stopped and looks as if it went on, or whose end is told for a moment only.
     #[cfg(target_os = "linux")]
@@ -382,7 +380,7 @@ mod tests {
             features: 0,
             system_hz: 1_000_000,
             configuration_hash: 0,
-            t_format_channels: 0,
+            protocols: Protocols::ENDAT,
             stream_additional_data: false,
         };
         let scales = vec![Scale::singleturn(10)];

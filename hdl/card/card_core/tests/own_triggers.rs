@@ -14,7 +14,7 @@ fn host(own: &[Option<OwnTrigger>]) -> Host {
         .take(own.len())
         .collect();
     for (channel, own) in config.channels.iter_mut().zip(own) {
-        channel.request.trigger = *own;
+        channel.spec.trigger = *own;
     }
     Host::of(true, 0b110, config)
 }

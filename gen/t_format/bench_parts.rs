@@ -1,11 +1,14 @@
 //! The T-format encoders of a test bench: who is on which line, and what the bench does with them.
 
 use crate::error::GenError;
+use crate::other_protocol::BenchParts;
 use crate::template;
-use endat_hdl::config::{CardConfig, ChannelConfig, TFormatRequest};
+use crate::testbench::text::{fields, real, whole, words, Bits, MARGIN_NS};
+use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::endat::channel::TIMESTAMP_TO_FIRST_FALL_CYCLES;
 use endat_hdl::endat::timing::cycles_to_ns;
-use endat_hdl::regs::{Block, T_FORMAT};
+use endat_hdl::protocols::{Spoken, TFormatSpec};
+use endat_hdl::regs::{Block, Protocol, T_FORMAT};
 use endat_hdl::t_format::cause;
 use endat_hdl::t_format::protocol::{
     control, Content, Request, BIT_HZ, FAST_BIT_HZ, FIELD_BITS, RATE_TOLERANCE_PPM, REST_US,
@@ -14,8 +17,6 @@ use endat_hdl::t_format::protocol::{
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;
-
-use super::{fields, real, whole, words};
 
 /// What an edge may be off beside the rate, in bits: clock cycles of the receiver.
 const EDGE_BITS: f64 = 0.025;
@@ -53,12 +54,7 @@ struct Port {
 }
 
 impl Port {
-    fn new(
-        card: &CardConfig,
-        index: usize,
-        channel: &ChannelConfig,
-        wanted: &TFormatRequest,
-    ) -> Self {
+    fn new(card: &CardConfig, index: usize, channel: &ChannelConfig, wanted: &TFormatSpec) -> Self {
         let has = |content: Content| wanted.request.reply().contains(&content);
         let (has_single, has_multi) = (has(Content::SingleTurn), has(Content::MultiTurn));
         // Every channel has another cable.
@@ -171,72 +167,63 @@ pub(crate) fn encoder(name: &str) -> Result<String, GenError> {
     )
 }
 
-/// What the bench of a card with T-format channels has besides.
-#[derive(Default)]
-pub(super) struct Parts {
-    /// The module of the encoder.
-    pub encoder: String,
-    /// Encoders at the channels, and tasks.
-    pub ports: String,
-    /// What is tried.
-    pub steps: String,
-    /// Channels whose results bring no position.
-    pub silent: Vec<usize>,
-    /// The bits of the position that results of each channel bring.
-    pub masks: Vec<(usize, String)>,
-}
+/// After a reply that came late or not whole, the line is idle at the latest after this, in ns.
+pub(crate) const IDLE_NS: u64 = 25_000;
 
-impl Parts {
-    /// Those of a card; empty if all of its channels speak EnDat.
-    pub fn new(name: &str, card: &CardConfig, sleeps: bool) -> Result<Self, GenError> {
-        let channels = card.channels.iter().enumerate();
-        let ports: Vec<Port> = channels
-            .filter_map(|(n, c)| Some(Port::new(card, n, c, c.t_format.as_ref()?)))
-            .collect();
-        if ports.is_empty() {
-            return Ok(Self::default());
-        }
-        let silent = ports.iter().filter(|p| p.has_single + p.has_multi == 0);
-        let silent = silent.map(|p| p.index).collect();
-        let masks = ports.iter().map(|p| (p.index, p.mask.clone())).collect();
-        let context = context! {
-            name,
-            sleeps,
-            channels => Serde(ports),
-            count => card.channels.len(),
-            direct => card.outputs.position,
-            words => Serde(words(&T_FORMAT).collect::<Vec<_>>()),
-            fields => Serde(fields_of(&T_FORMAT)),
-            causes => causes(),
-            unknown_request => cause::UNKNOWN_REQUEST,
-            trigger_overrun => cause::TRIGGER_OVERRUN,
-            host_ns => whole(host_ns(card)),
-            clock_pin_cycles => TIMESTAMP_TO_FIRST_FALL_CYCLES,
-            ids => Request::ALL.iter().map(|r| r.id()).collect::<Vec<_>>(),
-            unknown => (0..16).find(|id| Request::from_id(*id).is_none()),
-            read_id => Request::ReadEeprom.id(),
-            write_id => Request::WriteEeprom.id(),
-        };
-        let part = |name: &str, text: &str| template::render(name, text, &context);
-        Ok(Self {
-            encoder: encoder(name)?,
-            ports: part(
-                "t_format_ports",
-                include_str!("../templates/t_format_ports.v.jinja"),
-            )?,
-            steps: part(
-                "t_format_steps",
-                include_str!("../templates/t_format_steps.v.jinja"),
-            )?,
-            silent,
-            masks,
-        })
-    }
+/// What the bench of a card with T-format channels has besides.
+pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError> {
+    let channels = card.channels.iter().enumerate();
+    let speakers = channels.filter_map(|(n, c)| Some((n, c, c.spoken.t_format()?)));
+    let exchanges = speakers.clone();
+    let ports: Vec<Port> = speakers
+        .map(|(n, c, wanted)| Port::new(card, n, c, wanted))
+        .collect();
+    let silent = ports.iter().filter(|p| p.has_single + p.has_multi == 0);
+    let silent = silent.map(|p| p.index).collect();
+    let masks = ports.iter().map(|p| (p.index, p.mask.clone())).collect();
+    let numbers = ports.iter().map(|p| p.index).collect();
+    let exchanges = exchanges.map(|(_, c, wanted)| c.period_cycles * wanted.request.wire_bits());
+    let context = context! {
+        name,
+        sleeps,
+        channels => Serde(ports),
+        count => card.channels.len(),
+        direct => card.outputs.position,
+        words => Serde(words(&T_FORMAT).collect::<Vec<_>>()),
+        fields => Serde(fields_of(&T_FORMAT)),
+        causes => causes(),
+        unknown_request => cause::UNKNOWN_REQUEST,
+        trigger_overrun => cause::TRIGGER_OVERRUN,
+        host_ns => whole(host_ns(card)),
+        clock_pin_cycles => TIMESTAMP_TO_FIRST_FALL_CYCLES,
+        ids => Request::ALL.iter().map(|r| r.id()).collect::<Vec<_>>(),
+        unknown => (0..16).find(|id| Request::from_id(*id).is_none()),
+        read_id => Request::ReadEeprom.id(),
+        write_id => Request::WriteEeprom.id(),
+    };
+    let part = |name: &str, text: &str| template::render(name, text, &context);
+    Ok(BenchParts {
+        name: Protocol::TFormat.name(),
+        word: Protocol::TFormat.row().word,
+        channels: numbers,
+        encoder: encoder(name)?,
+        ports: part(
+            "t_format_ports",
+            include_str!("../templates/t_format_ports.v.jinja"),
+        )?,
+        steps: part(
+            "t_format_steps",
+            include_str!("../templates/t_format_steps.v.jinja"),
+        )?,
+        silent,
+        masks,
+        shortest_cycles: exchanges.min().unwrap_or(0),
+    })
 }
 
 /// Names that other blocks have, too, get that of the block.
-fn fields_of(block: &Block) -> Vec<super::Bits> {
-    let named = |mut bits: super::Bits| {
+fn fields_of(block: &Block) -> Vec<Bits> {
+    let named = |mut bits: Bits| {
         bits.name = format!("T_FORMAT_{}", bits.name);
         bits
     };
@@ -246,14 +233,14 @@ fn fields_of(block: &Block) -> Vec<super::Bits> {
 /// The longest exchange of any request at any channel, in ns.
 fn host_ns(card: &CardConfig) -> u64 {
     let longest = |channel: &ChannelConfig| {
-        let wanted = channel.t_format?;
+        let wanted = *channel.spoken.t_format()?;
         let of = |request: Request| {
             let mut channel = channel.clone();
-            channel.t_format = Some(TFormatRequest { request, ..wanted });
+            channel.spoken = Spoken::TFormat(TFormatSpec { request, ..wanted });
             channel.cycle_max_cycles(card.system_hz)
         };
         Request::ALL.into_iter().map(of).max()
     };
     let cycles = card.channels.iter().filter_map(longest).max();
-    cycles_to_ns(cycles.unwrap_or(0), card.system_hz) + super::MARGIN_NS
+    cycles_to_ns(cycles.unwrap_or(0), card.system_hz) + MARGIN_NS
 }

@@ -1,11 +1,15 @@
 //! What a channel that speaks T-format becomes.
 
-use super::{us_of, Rate};
-use endat_hdl::config::{CardConfig, ChannelConfig, TFormatRequest};
+use crate::explain::rate::{rate, us_of, Rate};
+use crate::other_protocol::OtherReport;
+use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::protocols::TFormatSpec;
 use endat_hdl::t_format::protocol::{REST_US, WAIT_GRACE_US};
+use endat_regs::Protocol;
 use endat_sim::decimal;
 use serde::Serialize;
-use std::fmt;
+use serde_json::json;
+use std::fmt::{self, Write};
 
 /// One T-format channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,7 +44,7 @@ impl TFormatReport {
     pub(super) fn new(
         card: &CardConfig,
         config: &ChannelConfig,
-        t_format: &TFormatRequest,
+        t_format: &TFormatSpec,
         encoder: &str,
     ) -> Self {
         let us = |cycles: u64| us_of(cycles, card.system_hz);
@@ -48,7 +52,7 @@ impl TFormatReport {
         let exchange_us = us(config.cycle_max_cycles(card.system_hz));
         Self {
             encoder: encoder.into(),
-            protocol: crate::config::words::T_FORMAT,
+            protocol: Protocol::TFormat.row().word,
             bit_rate: Rate::new(t_format.bit_hz, config.actual_hz(card.system_hz)),
             bit_cycles: config.period_cycles,
             request: request.id(),
@@ -62,8 +66,19 @@ impl TFormatReport {
         }
     }
 
+    /// The same for a report of all channels.
+    pub(super) fn as_channel(&self, index: usize) -> OtherReport {
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        let _ = self.write(&mut text, index);
+        OtherReport {
+            data: json!(self),
+            text,
+        }
+    }
+
     /// The lines of channel `index`.
-    pub(super) fn write(&self, f: &mut fmt::Formatter<'_>, index: usize) -> fmt::Result {
+    fn write(&self, f: &mut String, index: usize) -> fmt::Result {
         let encoder = match self.encoder.as_str() {
             "" => String::new(),
             encoder => format!(", {encoder}"),
@@ -72,7 +87,7 @@ impl TFormatReport {
         writeln!(
             f,
             "  bit rate         {}; {} cycles in a bit",
-            super::text::rate(&self.bit_rate, "bit/s"),
+            rate(&self.bit_rate, "bit/s"),
             self.bit_cycles
         )?;
         writeln!(

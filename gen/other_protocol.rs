@@ -1,0 +1,120 @@
+//! What the program has to know of a protocol besides EnDat: one implementation is all of it, [`crate::protocols`] lists them.
+
+use crate::config::reader::Table;
+use crate::error::GenError;
+use crate::virtual_card::deed::Deed;
+use crate::virtual_card::sets::Motion;
+use crate::virtual_card::settings::VirtualConfig;
+use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::protocols::Spoken;
+use endat_regs::Protocol;
+use endat_sim::bench::OtherEncoder;
+use serde::Serialize;
+
+/// A protocol besides EnDat.
+pub trait Other: Sync {
+    /// Which it is.
+    fn protocol(&self) -> Protocol;
+
+    /// Reads a `[[channel]]` of a card.
+    fn read(&self, table: &Table<'_, '_>, system_hz: Option<u64>) -> Wanted;
+
+    /// What decides what a channel does, for the hash of a card.
+    fn canonical(&self, channel: &ChannelConfig) -> String;
+
+    /// What `explain` tells of channel `index`.
+    fn report(&self, card: &CardConfig, index: usize, encoder: &str) -> OtherReport;
+
+    /// What the emitted bench has for its channels; `sleeps`: the card does something else first.
+    fn bench(&self, name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError>;
+
+    /// After an exchange without a reply the line of the bench's encoder is idle at the latest after this, in ns.
+    fn idle_ns(&self) -> u64;
+
+    /// Encoders that `--encoder` knows.
+    fn devices(&self) -> &'static [&'static str];
+
+    /// An encoder at channel `n` of a virtual card; `is_open`: not plugged in.
+    fn plug(
+        &self,
+        channel: &ChannelConfig,
+        n: usize,
+        is_open: bool,
+        config: &VirtualConfig,
+    ) -> Plugged;
+
+    /// An encoder without a fault at channel `n`, of a run that is recorded.
+    fn sound(&self, channel: &ChannelConfig, n: usize) -> Box<dyn OtherEncoder>;
+}
+
+/// What a bench has for the channels of a protocol: text, and what the rest of the bench must know of them.
+///
+/// In the text of a protocol called `x` the rest of the bench counts on the task `x_new_fields` (other content, and no fault),
+/// `x_check_requests` (behind the start of a trigger), `x_check` (a channel and the status of its result), `x_check_stamps`, the function
+/// `x_start_cycles` (from the time stamp of an EnDat channel to that of this one; 0 of others) and the parameter `X_TRIGGER_OVERRUN`.
+#[derive(Serialize)]
+pub struct BenchParts {
+    /// Name of the protocol, and as an identifier.
+    pub name: &'static str,
+    /// See `name`.
+    pub word: &'static str,
+    /// The channels that speak it.
+    pub channels: Vec<usize>,
+    /// The module of the encoder.
+    pub encoder: String,
+    /// Encoders at the channels, and tasks.
+    pub ports: String,
+    /// What is tried.
+    pub steps: String,
+    /// Channels whose results bring no position.
+    pub silent: Vec<usize>,
+    /// The bits of the position that results of each channel bring.
+    pub masks: Vec<(usize, String)>,
+    /// The shortest exchange, in system clock cycles.
+    pub shortest_cycles: u64,
+}
+
+/// An encoder that is plugged in.
+pub struct Plugged {
+    /// The encoder on its line.
+    pub encoder: Box<dyn OtherEncoder>,
+    /// Its position, as a result has it.
+    pub motion: Motion,
+    /// What can be wrong with it.
+    pub faults: Box<dyn OtherFaults>,
+}
+
+/// What can be wrong with an encoder of a virtual card.
+pub trait OtherFaults: Send {
+    /// Faults that it knows, in words.
+    fn known(&self) -> &'static [&'static str];
+
+    /// Makes one; none if there is no such fault.
+    fn make(&mut self, encoder: &mut dyn OtherEncoder, deed: Deed) -> Option<()>;
+
+    /// Ends what was to spoil some replies only; whether something of that kind goes on.
+    fn mend(&mut self, encoder: &mut dyn OtherEncoder) -> bool;
+}
+
+/// What is asked of a channel.
+pub struct Wanted {
+    /// All but what every protocol has.
+    pub spoken: Spoken,
+    /// Rate on the line, in hertz.
+    pub rate_hz: u64,
+    /// Input filter, in ns.
+    pub filter_ns: u64,
+    /// The keys, with their lines.
+    pub lines: Vec<(&'static str, usize)>,
+}
+
+/// What `explain` tells of a channel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct OtherReport {
+    /// As data.
+    pub data: serde_json::Value,
+    /// As lines of text.
+    #[serde(skip)]
+    pub text: String,
+}

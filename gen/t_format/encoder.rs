@@ -1,0 +1,166 @@
+//! A T-format encoder at a virtual card: how it moves, and what can be wrong with it.
+
+use crate::other_protocol::{OtherFaults, Plugged};
+use crate::virtual_card::deed::Deed;
+use crate::virtual_card::settings::{VirtualConfig, NS_PER_M, SECOND};
+use endat_sim::bench::{OtherEncoder, TFormatLink, TFormatMotion};
+use endat_sim::encoder::Defect as Wanted;
+use endat_sim::line::FaultKind;
+use endat_sim::t_format::{Defect, EncoderConfig};
+use endat_sim::{Time, MS, NS};
+use std::sync::Arc;
+
+/// The device that it is: single-turn position of 17 bits, multi-turn of 16.
+pub(crate) const DEVICES: &[&str] = &["TS5700N8401"];
+const SINGLE_BITS: u32 = 17;
+
+/// What it and its line can do of the faults that there are.
+const FAULTS: [&str; 9] = [
+    "unplug",
+    "plug",
+    "crc",
+    "silent",
+    "slow",
+    "alarm (bits to 255)",
+    "jitter",
+    "line stuck_low or open",
+    "heal",
+];
+
+/// Bits of ALMC that a bit of the status field tells, too: counting error; multi-turn and battery.
+const ALARMS: [(u16, u8); 2] = [(0x04, 1 << 4), (0xE0, 1 << 5)];
+
+/// Single-turn and multi-turn position of one that turns evenly.
+fn motion(channel: usize, speed: f64) -> TFormatMotion {
+    let speed = speed * (1.0 + 0.5 * channel as f64);
+    let start = 100.1 * (channel + 1) as f64;
+    Arc::new(move |time: Time| {
+        let turns = start + speed * time as f64 / SECOND;
+        let steps = (turns * f64::from(1 << SINGLE_BITS)).max(0.0) as u64;
+        let single = steps & ((1 << SINGLE_BITS) - 1);
+        (single as u32, (steps >> SINGLE_BITS) as u16 as u32)
+    })
+}
+
+/// One on its line, turning as others do.
+pub(crate) fn plug(bit_hz: u64, channel: usize, is_open: bool, config: &VirtualConfig) -> Plugged {
+    let encoder = EncoderConfig {
+        bit_hz,
+        // A battery that is full: otherwise every result would have that alarm.
+        status: 0,
+        alarm: 0,
+        jitter: config.jitter_ns as Time * NS,
+        write_time: MS,
+        seed: config.seed.wrapping_add(channel as u64),
+        ..EncoderConfig::default()
+    };
+    let faults = Faults {
+        sound: encoder.clone(),
+        spoilt_until: None,
+    };
+    let mut link = TFormatLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
+    let turns = motion(channel, config.speed);
+    link.set_motion(turns.clone());
+    if is_open {
+        link.unplug();
+    }
+    Plugged {
+        encoder: Box::new(link),
+        motion: Arc::new(move |time| {
+            let (single, multi) = turns(time);
+            u64::from(multi) << 24 | u64::from(single)
+        }),
+        faults: Box::new(faults),
+    }
+}
+
+/// One without a fault at channel `n`, for a run that is recorded: 10 m away.
+pub(crate) fn sound(bit_hz: u64, n: usize) -> TFormatLink {
+    let config = EncoderConfig {
+        bit_hz,
+        status: 0,
+        alarm: 0,
+        seed: n as u64 + 1,
+        ..EncoderConfig::default()
+    };
+    TFormatLink::new(config, 50 * NS)
+}
+
+/// What is wrong with one.
+struct Faults {
+    /// As it was.
+    sound: EncoderConfig,
+    /// Its replies are spoilt until it has heard so many requests.
+    spoilt_until: Option<u64>,
+}
+
+fn link(encoder: &mut dyn OtherEncoder) -> &mut TFormatLink {
+    let link = encoder.as_any_mut().downcast_mut();
+    link.expect("the encoder that these faults were made for")
+}
+
+impl OtherFaults for Faults {
+    fn known(&self) -> &'static [&'static str] {
+        &FAULTS
+    }
+
+    fn make(&mut self, encoder: &mut dyn OtherEncoder, deed: Deed) -> Option<()> {
+        let link = link(encoder);
+        let until = |replies| Some(link.encoder().requests().len() as u64 + replies);
+        let (ends, defect) = match deed {
+            // Of a position: only the CRC tells.
+            Deed::Spoil(replies, Wanted::CrcXor(_)) => {
+                (until(replies), Defect::Flip { field: 2, bit: 0 })
+            }
+            Deed::Spoil(replies, Wanted::NoStartBit) => (until(replies), Defect::Silent),
+            Deed::Line(FaultKind::StuckLow) => (None, Defect::StuckLow),
+            _ => return self.change(link, deed),
+        };
+        link.encoder_mut().config.defect = defect;
+        self.spoilt_until = ends;
+        Some(())
+    }
+
+    fn mend(&mut self, encoder: &mut dyn OtherEncoder) -> bool {
+        let Some(requests) = self.spoilt_until else {
+            return false;
+        };
+        let encoder = link(encoder).encoder_mut();
+        let goes_on = (encoder.requests().len() as u64) < requests;
+        if !goes_on {
+            encoder.config.defect = Defect::None;
+            self.spoilt_until = None;
+        }
+        goes_on
+    }
+}
+
+impl Faults {
+    /// What lasts until something else is asked for.
+    fn change(&mut self, link: &mut TFormatLink, deed: Deed) -> Option<()> {
+        match deed {
+            Deed::Supply(true) => link.plug(),
+            Deed::Supply(false) | Deed::Line(FaultKind::Open) => link.unplug(),
+            Deed::Slow(by) => link.encoder_mut().config.reply_gap = self.sound.reply_gap + by,
+            Deed::Jitter(most) => link.encoder_mut().config.jitter = most,
+            Deed::Status {
+                alarms,
+                warnings: 0,
+            } if alarms <= 0xFF => {
+                let config = &mut link.encoder_mut().config;
+                config.alarm |= alarms as u8;
+                // The status field sums them up.
+                for (bits, status) in ALARMS {
+                    config.status |= if alarms & bits == 0 { 0 } else { status };
+                }
+            }
+            Deed::Heal => {
+                link.plug();
+                link.encoder_mut().config = self.sound.clone();
+                self.spoilt_until = None;
+            }
+            _ => return None,
+        }
+        Some(())
+    }
+}

@@ -1,0 +1,252 @@
+//! What the transaction does in each of its phases.
+
+use rtl_design::kernel_parts;
+
+#[kernel_parts(states)]
+impl Transaction {
+    /// DATA is not LOW yet, or not for long enough.
+    fn await_low(&mut self) {
+        self.limit.next = self.ready_low_cycles.val();
+        self.timer_clear.next = self.level.val();
+        self.idle.next = self.level.val() & !(self.next_frame.hold_off.val() & self.has_all.val());
+        if self.timer_hit.q.val() {
+            self.phase.d.next = Phase::Ready;
+        }
+        if self.level.val() {
+            self.phase.d.next = Phase::NotReady;
+            // Longer than an edge rings.
+            self.plugged.next = self.high_at_tick.q.val() & self.tick_us.val();
+            if self.triggered.val() | self.owed.val() {
+                self.found.next = self.not_low.val();
+                self.give_up.next = true;
+            }
+        }
+        if self.vanished.val() {
+            self.found.next = self.upset.val();
+            self.give_up.next = true;
+        }
+    }
+
+    /// A frame may begin.
+    fn await_trigger(&mut self) {
+        self.timer_clear.next = true;
+        // A trigger just behind one that was refused is lost: the result that is being told would be taken for its own.
+        self.idle.next =
+            !(self.next_frame.hold_off.val() & self.has_all.val()) & !self.verdict.is_telling.val();
+        if self.level.val() {
+            self.phase.d.next = Phase::NotReady;
+            self.plugged.next = true;
+            if (self.triggered.val() | self.owed.val()) & !self.verdict.is_telling.val() {
+                self.found.next = self.not_low.val();
+                self.give_up.next = true;
+            }
+        } else {
+            if self.wanted.val() & !self.verdict.is_telling.val() {
+                if self.next_frame.is_known.val() {
+                    self.accept.next = true;
+                    self.phase.d.next = Phase::Frame;
+                    if self.extra.q.val() {
+                        self.phase.d.next = Phase::FirstLow;
+                    }
+                } else {
+                    self.found.next = self.unknown_command.val();
+                    self.refuse.next = true;
+                }
+            }
+            // The line is wanted for long; the trigger has a result all the same: nothing wrong, no position.
+            if self.once_more.q.val()
+                & self.next_frame.hold_off.val()
+                & self.has_all.val()
+                & !self.own.val()
+            {
+                self.refuse.next = true;
+            }
+        }
+        if self.vanished.val() {
+            self.found.next = self.upset.val();
+            self.give_up.next = true;
+        }
+    }
+
+    /// The first low phase is longer than the others.
+    fn hold_first_low(&mut self) {
+        self.running.next = true;
+        self.watched.next = true;
+        self.limit.next = bit_cast::<16, 11>(self.limits.first_low_extra_cycles.val());
+        if self.timer_hit.q.val() {
+            self.phase.d.next = Phase::Frame;
+            self.timer_clear.next = true;
+        }
+    }
+
+    /// Command and answer.
+    fn run_frame(&mut self) {
+        self.running.next = true;
+        self.watched.next = true;
+        self.in_us.next = true;
+        self.timer_clear.next =
+            (self.progress.hunting.val() ^ self.was_hunting.q.val()) | self.progress.finished.val();
+        // A receiver that has lost its place.
+        if self.endless.val() & !self.progress.hunting.val() {
+            self.found.next = self.tail_low.val();
+            self.give_up.next = true;
+        }
+        // In the first cycle of the hunt the timer is still that of what was before.
+        if self.timer_hit.q.val() & self.progress.hunting.val() & self.was_hunting.q.val() {
+            self.found.next = self.no_start.val();
+            self.give_up.next = true;
+            // The result is told; the clock goes on as long again, to know a late encoder from a silent one.
+            if self.has_diagnosis.val() & !self.shape.has_parameter.val() & !self.late.q.val() {
+                self.give_up.next = false;
+                self.announce.next = true;
+                self.timer_clear.next = true;
+            }
+        }
+        if self.late.q.val() & (self.progress.started.val() | self.progress.start_refused.val()) {
+            self.found.next = self.no_start_bit.val() | self.late_start.val();
+            self.give_up.next = true;
+        }
+        if self.progress.start_refused.val() & !self.late.q.val() {
+            self.found.next = self.start_window.val();
+            self.give_up.next = true;
+        }
+        if self.progress.done.val() {
+            self.answer_taken.next = true;
+        }
+        if self.progress.separated.val() & self.has_all.val() {
+            self.proof.next = true;
+        }
+        if self.has_continuous.val() & self.progress.gap_good.val() {
+            self.proof.next = true;
+        }
+        if self.has_continuous.val() & self.progress.latched.val() {
+            self.normal_end.next = true;
+        }
+        if self.progress.info_missing.val() & self.has_all.val() {
+            self.found.next = self.info_not_there.val();
+            self.give_up.next = true;
+        }
+        if self.has_continuous.val() & self.progress.gap_low.val() {
+            self.found.next = self.tail_low.val();
+            self.give_up.next = true;
+        }
+        if self.has_continuous.val() & self.progress.gap_high.val() {
+            self.found.next = self.not_falling.val();
+            self.give_up.next = true;
+            self.found_late.next = true;
+        }
+        if self.progress.finished.val() & !self.going.val() {
+            self.phase.d.next = Phase::Tail;
+            if self.has_all.val() & self.shape.has_supplement.val() & !self.in_supplement.q.val() {
+                self.phase.d.next = Phase::Park;
+            }
+        }
+    }
+
+    /// CLOCK is LOW before the supplement.
+    fn park(&mut self) {
+        self.running.next = true;
+        self.watched.next = true;
+        // No bit follows the answer here.
+        self.proof.next = self.verdict.taken.val();
+        self.limit.next = self.park_cycles.val();
+        if self.timer_hit.q.val() {
+            self.phase.d.next = Phase::Frame;
+            self.timer_clear.next = true;
+            self.in_supplement.d.next = true;
+            self.supplement_now.d.next = true;
+            if !self.progress.all_ended.val() {
+                self.found.next = self.upset.val();
+                self.give_up.next = true;
+            }
+        }
+        if !self.has_all.val() {
+            self.give_up.next = true;
+        }
+    }
+
+    /// The last edges of the clock.
+    fn end_clock(&mut self) {
+        self.running.next = true;
+        self.watched.next = true;
+        self.in_us.next = true;
+        if self.endless.val() {
+            self.found.next = self.tail_low.val();
+            self.give_up.next = true;
+        }
+        // A cycle late, for the middle may come before the last bit has been worked upon.
+        if self.was_center.q.val() {
+            self.phase.d.next = Phase::Recovery;
+            // From here on the full clock's times again: a short tm ends before half a slow period does.
+            self.acquiring.d.next = false;
+            self.slow_now.d.next = false;
+        }
+    }
+
+    /// DATA falls when the recovery time is over.
+    fn await_fall(&mut self) {
+        self.running.next = !self.tail_sampled.q.val();
+        self.watched.next = true;
+        self.limit.next = bit_cast::<16, 13>(self.limits.recovery_limit_cycles.val());
+        // A request's command may have another range than the triggers' one.
+        if self.own.val() {
+            self.limit.next = self.own_recovery_limit_cycles.val();
+        }
+        if self.cells.sample.val() {
+            self.tail_sampled.d.next = true;
+            self.proof.next = !self.tail_sampled.q.val() & self.level.val();
+        }
+        if self.tail_sampled.q.val() & !self.level.val() {
+            self.recovery.d.next = self.timer.q.val().get_bits::<13>(0);
+            self.timer_clear.next = true;
+            self.phase.d.next = Phase::NotReady;
+            self.normal_end.next = true;
+        } else {
+            if self.timer_hit.q.val() {
+                self.found.next = self.not_falling.val();
+                self.give_up.next = true;
+            }
+        }
+        // Each cell had its pulse, but for one whose count was upset.
+        if self.cells.sample.val() & !self.tail_sampled.q.val() & !self.progress.all_used.val() {
+            self.found.next = self.upset.val();
+            self.give_up.next = true;
+        }
+        // The encoder still sends, or has stopped early: its frame has another length than ours.
+        if self.cells.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
+            self.found.next = self.tail_low.val();
+            self.give_up.next = true;
+        }
+    }
+
+    /// The line is left alone; then it is probed, where that is known.
+    fn stay_quiet(&mut self) {
+        self.in_us.next = true;
+        self.limit.next = self.abort_us.val();
+        if self.has_continuous.val() & self.leaving.q.val() {
+            self.limit.next = self.leave_us.val();
+        }
+        if self.has_diagnosis.val() & self.probing.q.val() {
+            self.limit.next = self.probe_us.val();
+        }
+        if self.has_diagnosis.val() & self.settling.q.val() {
+            self.limit.next = self.settle_us.val();
+        }
+        if self.timer_hit.q.val() {
+            self.phase.d.next = Phase::NotReady;
+            self.timer_clear.next = true;
+            self.leaving.d.next = false;
+            self.settling.d.next = false;
+            if self.has_diagnosis.val() & self.level.val() & !self.settling.q.val() {
+                self.phase.d.next = Phase::Abort;
+                self.probing.d.next = true;
+            }
+            if self.probing.q.val() {
+                self.phase.d.next = Phase::Abort;
+                self.probed.next = true;
+                self.probing.d.next = false;
+                self.settling.d.next = true;
+            }
+        }
+    }
+}
