@@ -10,6 +10,7 @@ use crate::config::{Project, Receiver};
 use crate::constraints::top_language;
 use crate::error::GenError;
 use crate::language::Language;
+use crate::protocols::spoken;
 use crate::template::render;
 use crate::testbench::RESET_CYCLES;
 use crate::zynq;
@@ -207,8 +208,7 @@ impl<'a> Core<'a> {
         };
         let channels = project.card.channels.len();
         let title = format!("{} acquisition card", project.protocols());
-        let spoken = Protocol::ALL.iter().filter(|p| project.card.speaks(**p));
-        let standards: Vec<&str> = spoken.map(|p| p.row().means).collect();
+        let standards: Vec<&str> = spoken(&project.card).map(|p| p.row().means).collect();
         Ok(Self {
             name: &project.name,
             hash: &project.hash,

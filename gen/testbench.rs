@@ -10,7 +10,7 @@ use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use crate::other_protocol::BenchParts;
-use crate::protocols::OTHERS;
+use crate::protocols::others_on;
 use crate::template;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::{service_times, services};
@@ -178,8 +178,7 @@ fn cycle_ns(card: &CardConfig) -> u64 {
     };
     let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz) + more(c), hz);
     let exchange_ns = card.channels.iter().map(exchange).max().unwrap_or(0);
-    let there = OTHERS.iter().filter(|o| card.speaks(o.protocol()));
-    let idle_ns = there.map(|other| other.idle_ns()).max();
+    let idle_ns = others_on(card).map(|other| other.idle_ns()).max();
     exchange_ns + MARGIN_NS + idle_ns.unwrap_or(0)
 }
 
@@ -204,8 +203,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     };
     let hz = card.system_hz;
     let sleeps = card.service.initialise || !card.initial_values;
-    let there = OTHERS.iter().filter(|o| card.speaks(o.protocol()));
-    let others = there.map(|other| other.bench(&project.name, card, sleeps));
+    let others = others_on(card).map(|other| other.bench(&project.name, card, sleeps));
     let others: Vec<BenchParts> = others.collect::<Result<_, _>>()?;
     let cycle_ns = cycle_ns(card);
     let after_frame = |c: &ChannelConfig| c.cycle_max_cycles(hz) - c.frame_time(hz).frame_cycles;

@@ -122,12 +122,14 @@ fn write_limits(text: &mut String, block: &MapBlock) {
             let name = [block.block.name, entry.register.name, field.name].join("_");
             let name = name.to_ascii_uppercase();
             for protocol in Protocol::ALL {
-                let is_own = *protocol == Protocol::Endat || protocol.own(field).is_some();
-                let all = (0, field.mask() >> field.lsb);
-                let is_own = is_own && field.ranges(*protocol) != [all];
-                let ([(least, greatest)], true) = (field.ranges(*protocol), is_own) else {
+                let [(least, greatest)] = field.ranges(*protocol) else {
                     continue;
                 };
+                let is_as_in_endat = *protocol != Protocol::Endat && protocol.own(field).is_none();
+                let is_all = (*least, *greatest) == (0, field.mask() >> field.lsb);
+                if is_as_in_endat || is_all {
+                    continue;
+                }
                 let (channel, suffix) = match protocol {
                     Protocol::Endat => Default::default(),
                     other => (

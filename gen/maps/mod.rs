@@ -26,6 +26,7 @@ mod vhdl;
 use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
+use crate::protocols::spoken;
 use endat_hdl::regs;
 use endat_regs::{Block, Field, Named, Protocol, Register, Values};
 
@@ -76,8 +77,7 @@ impl Map {
     /// The map of a project.
     pub fn new(project: &Project) -> Self {
         let config = &project.card;
-        let spoken = Protocol::ALL.iter().copied();
-        let spoken: Vec<Protocol> = spoken.filter(|p| config.speaks(*p)).collect();
+        let spoken: Vec<Protocol> = spoken(config).collect();
         let map_block = |block: &'static Block| {
             let copies = if block.per_channel {
                 config.channels.len()

@@ -290,9 +290,8 @@ impl Rig {
                     let violations = bench.violations(n).iter();
                     violations.filter(|(_, v)| is_one(v)).count() + bench.conflicts(n).len()
                 };
-                let t_format = (0..bench.t_format_count()).map(|n| bench.t_format(n));
-                let of_t_format = t_format.map(|link| link.encoder().violations().len());
-                let all = (0..encoders).map(of).chain(of_t_format);
+                let of_others = bench.others().map(|other| other.complaints().len());
+                let all = (0..encoders).map(of).chain(of_others);
                 format!("{:x}", all.sum::<usize>())
             }
             _ => self.access(&words),

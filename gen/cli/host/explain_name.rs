@@ -15,13 +15,10 @@ const SERVICE_CAUSES: std::ops::Range<u32> = 0..endat_hdl::endat::transaction::c
 /// Causes of all protocols; what one shares with EnDat is told once.
 fn own_causes() -> impl Iterator<Item = (&'static Named, Protocol)> {
     let of = |protocol: &Protocol| {
-        let protocol = *protocol;
-        let own = move |c: &&Named| {
-            protocol.row().causes[..]
-                .iter()
-                .any(|row| row.name == c.name && row.advice.is_some())
-        };
-        (protocol.row().coded.iter().filter(own)).map(move |c| (c, protocol))
+        let (protocol, row) = (*protocol, protocol.row());
+        let own = row.causes.iter().zip(row.coded);
+        let own = own.filter(|(cause, _)| cause.advice.is_some());
+        own.map(move |(_, named)| (named, protocol))
     };
     Protocol::ALL.iter().flat_map(of)
 }
