@@ -15,7 +15,7 @@ use crate::template::render;
 use crate::testbench::RESET_CYCLES;
 use crate::zynq;
 use endat_hdl::card::bus::HostBus;
-use endat_hdl::t_format::protocol::SYSTEM_HZ;
+use endat_hdl::protocols::t_format::protocol::SYSTEM_HZ;
 use endat_regs::Protocol;
 use endat_sim::decimal;
 use minijinja::context;

@@ -5,8 +5,7 @@ use crate::error::GenError;
 use crate::virtual_card::deed::Deed;
 use crate::virtual_card::sets::Motion;
 use crate::virtual_card::settings::VirtualConfig;
-use endat_hdl::config::{CardConfig, ChannelConfig};
-use endat_hdl::protocols::Spoken;
+use endat_hdl::config::{CardConfig, ChannelConfig, ChannelSpec};
 use endat_regs::Protocol;
 use endat_sim::bench::OtherEncoder;
 use serde::Serialize;
@@ -16,8 +15,8 @@ pub trait Other: Sync {
     /// Which it is.
     fn protocol(&self) -> Protocol;
 
-    /// Reads a `[[channel]]` of a card.
-    fn read(&self, table: &Table<'_, '_>, system_hz: Option<u64>) -> Wanted;
+    /// Reads a `[[channel]]` of a card; none if what is wrong leaves nothing to judge.
+    fn read(&self, table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted>;
 
     /// What decides what a channel does, for the hash of a card.
     fn canonical(&self, channel: &ChannelConfig) -> String;
@@ -98,12 +97,8 @@ pub trait OtherFaults: Send {
 
 /// What is asked of a channel.
 pub struct Wanted {
-    /// All but what every protocol has.
-    pub spoken: Spoken,
-    /// Rate on the line, in hertz.
-    pub rate_hz: u64,
-    /// Input filter, in ns.
-    pub filter_ns: u64,
+    /// All but its triggers.
+    pub spec: ChannelSpec,
     /// The keys, with their lines.
     pub lines: Vec<(&'static str, usize)>,
 }

@@ -1,4 +1,4 @@
-//! Encoder port: a channel, and its service where the configuration has one; or a T-format port in their place.
+//! Encoder port: a channel, and its service where the configuration has one; or the port of another protocol in their place.
 //!
 //! ```text
 //! trigger, configuration --> ServiceChannel --> Channel --> EnDat     trigger, configuration --> TFormatPort --> T-format
@@ -6,7 +6,7 @@
 //! host --- Service, RAM <-- io -+---+             +--> results        host --- words ---------------+  +--> results
 //! ```
 //!
-//! What only the other protocol has reads 0; EnDat's clock rests HIGH.
+//! What only another protocol has reads 0; EnDat's clock rests HIGH.
 //!
 //! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
 
@@ -17,8 +17,9 @@ use crate::endat::service::program::ServiceTimes;
 use crate::endat::service::{channel::ServiceChannel, Service};
 use crate::endat::transaction::cause;
 use crate::ports::*;
+use crate::protocols::ssi::port::SsiPort;
+use crate::protocols::t_format::port::TFormatPort;
 use crate::several::each;
-use crate::t_format::port::TFormatPort;
 use endat_regs::Protocol;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -92,6 +93,7 @@ pub struct EncoderPort {
     pub io_write: Vec<Signal<In, Bit>>,
     channel: Vec<Channel>,
     t_format: Vec<TFormatPort>,
+    ssi: Vec<SsiPort>,
     served: Vec<ServiceChannel>,
     service: Vec<Service>,
     monitor: Vec<LineMonitor>,
@@ -100,11 +102,19 @@ pub struct EncoderPort {
     recovery_too_short: Constant<Bits<5>>,
     _channels: usize,
     _t_formats: usize,
+    _ssis: usize,
     _served: usize,
     _services: usize,
     _ios: usize,
     _idle_ios: usize,
     _monitors: usize,
+}
+
+/// The port of another protocol than EnDat, if it is one.
+#[derive(Default)]
+struct Others {
+    t_format: Vec<TFormatPort>,
+    ssi: Vec<SsiPort>,
 }
 
 impl EncoderPort {
@@ -156,7 +166,7 @@ impl EncoderPort {
         let monitor = (line.alignment).then(|| LineMonitor::new(line, start));
         Self::of(
             vec![Channel::with(times, features)],
-            vec![],
+            Others::default(),
             served.into_iter().collect(),
             monitor.into_iter().collect(),
             service.is_some(),
@@ -168,16 +178,18 @@ impl EncoderPort {
     /// # Panics
     /// For EnDat, whose ports have settings of their own.
     pub fn speaking(protocol: Protocol, has_io: bool) -> Self {
-        let t_format = match protocol {
-            Protocol::TFormat => vec![TFormatPort::default()],
+        let mut others = Others::default();
+        match protocol {
+            Protocol::TFormat => others.t_format.push(TFormatPort::default()),
+            Protocol::Ssi => others.ssi.push(SsiPort::default()),
             Protocol::Endat => panic!("EncoderPort::served makes ports for EnDat"),
-        };
-        Self::of(vec![], t_format, vec![], vec![], has_io)
+        }
+        Self::of(vec![], others, vec![], vec![], has_io)
     }
 
     fn of(
         channel: Vec<Channel>,
-        t_format: Vec<TFormatPort>,
+        others: Others,
         served: Vec<ServiceChannel>,
         monitor: Vec<LineMonitor>,
         has_io: bool,
@@ -190,14 +202,16 @@ impl EncoderPort {
             io_out: each(ios),
             io_write: each(ios),
             _channels: channel.len(),
-            _t_formats: t_format.len(),
+            _t_formats: others.t_format.len(),
+            _ssis: others.ssi.len(),
             _served: served.len(),
             _services: 0,
             _ios: ios.min(served.len()),
             _idle_ios: ios.saturating_sub(served.len()),
             _monitors: monitor.len(),
             channel,
-            t_format,
+            t_format: others.t_format,
+            ssi: others.ssi,
             served,
             service: vec![],
             monitor,
@@ -259,6 +273,22 @@ impl Logic for EncoderPort {
             connect!(self.end <= self.t_format[i]; over, over_request);
             self.busy.next = self.t_format[i].busy.val();
             self.window.host_word.next = self.t_format[i].host_word.val();
+        }
+        for i in 0..self._ssis {
+            connect!(self.ssi[i] <= self; clock, reset, tick_us, timestamp, trigger);
+            connect!(self.ssi[i] <= self.settings;
+                period_cycles, first_low_extra_cycles, frame = command, position_bits,
+                filter_cycles, recovery_limit_cycles
+            );
+            self.ssi[i].data_i.next = self.line.data_i.val();
+            self.be_without_endat();
+            FrameResultOut::link(&mut self.result, &mut self.ssi[i].result);
+            self.line.endat_clk.next = self.ssi[i].ssi_clk.val();
+            self.line.data_o.next = true;
+            self.line.data_oe.next = false;
+            self.end.over.next = self.ssi[i].over.val();
+            self.end.over_request.next = false;
+            self.busy.next = self.ssi[i].busy.val();
         }
         for i in 0..self._served {
             connect!(self.served[i] <= self; clock, reset);

@@ -1,11 +1,11 @@
 //! The EnDat receiver core, described in rust-hdl.
 //!
 //! ```text
-//! host <-> card: front, registers, triggers, stream <-> encoder_port <-+-> endat:    Channel, Service, LineMonitor <-> line
-//!                                                                      +-> t_format: TFormatPort                   <-> line
+//! host <-> card: front, registers, triggers, stream <-> encoder_port <-+-> endat: Channel, Service, LineMonitor <-> line
+//!                                                                      +-> protocols: a port of another one    <-> line
 //! ```
 //!
-//! A protocol is a folder: [`endat`], [`t_format`]; [`protocols`] lists them. What all of them have is here: [`ports`] (what travels together), [`input_filter`],
+//! A protocol is a folder: [`endat`], and those that [`protocols`] lists. What all of them have is here: [`ports`] (what travels together), [`input_filter`],
 //! [`snapshot`]. [`encoder_port`] is one encoder of either, [`card`] all of them with their host, [`config`] what is asked for, in cycles.
 //! [`rtl_design`] has the registers, and turns any block into a typed `Design`.
 
@@ -15,6 +15,7 @@ pub mod encoder_port;
 pub mod endat;
 pub mod half_period;
 pub mod input_filter;
+pub mod lowest_cause;
 pub mod ports;
 pub use endat_regs::protocol;
 pub mod protocols;
@@ -22,6 +23,5 @@ pub mod regs;
 mod several;
 pub mod snapshot;
 pub mod sure_bit;
-pub mod t_format;
 #[cfg(test)]
 mod testing;

@@ -9,9 +9,7 @@ use protocol::MAX_POSITION_BITS;
 
 /// Whether a card of this configuration has a part.
 pub fn has(config: &CardConfig, part: Part) -> bool {
-    if let Some(protocol) = Protocol::ALL.iter().find(|p| p.row().part == Some(part)) {
-        return config.speaks(*protocol);
-    }
+    let speaks = |p: &&Protocol| p.row().part == Some(part) && config.speaks(**p);
     match part {
         Part::EnDat22 | Part::LineDelay => config.endat_channels().next().is_some(),
         Part::TriggerPin | Part::TriggerTimer => true,
@@ -30,7 +28,8 @@ pub fn has(config: &CardConfig, part: Part) -> bool {
         Part::SecondReceiver => config.safety.second_receiver,
         Part::ErrorTest => config.safety.error_test_ms != 0,
         Part::OwnTrigger => config.own_triggers(),
-        Part::TFormat => unreachable!("the part of a protocol"),
+        // That of a protocol.
+        _ => Protocol::ALL.iter().any(|p| speaks(&p)),
     }
 }
 
@@ -209,17 +208,18 @@ const STARTS: &[(&str, Start)] = &[
 /// Value of a word after reset; the channel is 0 for words of the card.
 pub fn start(block: &Block, register: &Register, config: &CardConfig, channel: usize) -> u32 {
     let value = |field: &Field| {
-        let path = format!("{}.{}.{}", block.name, register.name, field.name);
-        if let Some((_, start)) = STARTS.iter().find(|(place, _)| *place == path) {
-            return start(config, channel);
+        if let Some(own) = of_protocol(block, register, field, config, channel) {
+            return own;
         }
-        of_protocol(block, register, field, config, channel).unwrap_or(0)
+        let path = format!("{}.{}.{}", block.name, register.name, field.name);
+        let usual = STARTS.iter().find(|(place, _)| *place == path);
+        usual.map_or(0, |(_, start)| start(config, channel))
     };
     let parts = register.fields.iter();
     parts.fold(0, |word, f| word | (value(f) << f.lsb) as u32 & f.mask())
 }
 
-/// The same of a field that only one protocol has, or that tells which channels speak it.
+/// The same of a field that is another one in this channel's protocol, or that tells which channels speak one.
 fn of_protocol(
     block: &Block,
     register: &Register,
@@ -231,7 +231,7 @@ fn of_protocol(
     match block.name {
         "config" => spoken()?.start(register.name, field.name),
         "card" => {
-            let tells = |p: &&Protocol| p.row().channels == Some(field);
+            let tells = |p: &&Protocol| p.row().channels.as_ref() == Some(field);
             let protocol = Protocol::ALL.iter().find(tells)?;
             Some(config.protocols().channels(*protocol))
         }

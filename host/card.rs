@@ -342,8 +342,16 @@ impl<T: Transport> Card<T> {
             return Ok(());
         }
         let (name, word) = (protocol.name(), protocol.row().word);
+        let remedy = match protocol.row().part {
+            Some(_) => format!(
+                "its requests go through the words of {word}{channel} (`endat-gen explain {word}`)"
+            ),
+            None => {
+                "its encoders have nothing but positions; choose a channel that speaks EnDat".into()
+            }
+        };
         Err(HostError::Name(format!(
-            "channel {channel}: {what}: the channel speaks {name}, which has none; its requests go through the words of {word}{channel} (`endat-gen explain {word}`)"
+            "channel {channel}: {what}: the channel speaks {name}, which has none; {remedy}"
         )))
     }
 

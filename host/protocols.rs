@@ -5,30 +5,31 @@ use crate::card::Card;
 use crate::name_plate::Told;
 use crate::transport::Transport;
 use crate::units::Scale;
-use crate::{t_format, HostError};
+use crate::HostError;
 use endat_regs::Protocol;
 
 impl Scale {
-    /// That of all encoders of a protocol; none of EnDat, where each has its own.
-    pub fn of(protocol: Protocol) -> Option<Self> {
-        match protocol {
-            Protocol::Endat => None,
-            Protocol::TFormat => Some(t_format::SCALE),
+    /// That of all encoders of a protocol, if they have the same.
+    pub const fn of(protocol: Protocol) -> Option<Self> {
+        match protocol.row().single_bits {
+            Some(single_bits) => Some(Self::Counts { single_bits }),
+            None => None,
         }
     }
 }
 
 impl<T: Transport> Card<T> {
-    /// What the encoder of a channel tells of itself, or why it does not; none of EnDat, whose encoders have name plates.
+    /// What the encoder of a channel tells of itself, or why it does not; none of EnDat, whose encoders have name plates, and where an encoder
+    /// tells nothing.
     pub fn ask_encoder(
         &mut self,
         channel: usize,
     ) -> Result<Option<Result<Told, String>>, HostError> {
         match self.identity().protocol(channel) {
-            Protocol::Endat => Ok(None),
             Protocol::TFormat => Ok(Some(
                 self.t_format_state(channel)?.map(|state| state.told()),
             )),
+            _ => Ok(None),
         }
     }
 }

@@ -4,7 +4,6 @@ use crate::card::Card;
 use crate::name_plate::Told;
 use crate::registers::Place;
 use crate::transport::Transport;
-use crate::units::Scale;
 use crate::HostError;
 use endat_regs::Protocol;
 use std::time::Instant;
@@ -22,9 +21,6 @@ pub struct TFormatState {
     /// Alarm field (ALMC).
     pub alarm: u32,
 }
-
-/// What a step of a position is.
-pub(crate) const SCALE: Scale = Scale::Counts { single_bits: 24 };
 
 impl TFormatState {
     pub(crate) fn told(self) -> Told {

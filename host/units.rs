@@ -2,6 +2,9 @@
 
 use std::f64::consts::TAU;
 
+/// Bits of a position.
+const POSITION_BITS: u32 = endat_regs::protocol::MAX_POSITION_BITS;
+
 /// What a measuring step of an encoder is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
@@ -17,7 +20,7 @@ pub enum Scale {
     },
     /// Counts of an encoder that does not tell how many of them are a turn: those within the turn in the low bits, turns above.
     Counts {
-        /// Bits that counts within the turn have.
+        /// Bits that counts within the turn have; all of a position where nothing says what a turn is.
         single_bits: u32,
     },
 }
@@ -29,7 +32,7 @@ pub struct InUnits {
     pub value: f64,
     /// `deg`, `mm` or `counts`.
     pub unit: &'static str,
-    /// Whole turns, of a rotary encoder.
+    /// Whole turns, where it is known what a turn is.
     pub turns: Option<u64>,
 }
 
@@ -60,7 +63,7 @@ impl Scale {
             Self::Counts { single_bits } => InUnits {
                 value: self.steps(position) as f64,
                 unit: "counts",
-                turns: Some(position >> single_bits),
+                turns: (single_bits < POSITION_BITS).then(|| position >> single_bits),
             },
         }
     }

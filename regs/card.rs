@@ -1,11 +1,30 @@
 //! The card's own words: identification, capabilities, counters and strobes.
 
 use crate::part::{Part, FEATURES, MORE_FEATURES};
-use crate::{field, word, Access, Block, BLOCK_STRIDE};
+use crate::{field, protocols, word, Access, Block, Field, Protocol, BLOCK_STRIDE};
 use Access::{ReadOnly, ReadWrite, Strobe};
 
 /// Offset of the first of the stream's four words.
 const STREAM_FIRST: u8 = 12;
+
+/// Which channels speak what, and what else there is.
+const PROTOCOLS: &[Field] = &protocols::fields::<{ Protocol::ALL.len() + 1 }>(&[
+    field(
+        "stream_additional_data",
+        8,
+        1,
+        "",
+        "1: sets of the stream have the additional data",
+    ),
+    field(
+        "features",
+        16,
+        8,
+        "",
+        "Parts that have no place in capabilities.features",
+    )
+    .bits(MORE_FEATURES),
+]);
 
 /// Identification, capabilities, counters and strobes.
 pub const CARD: Block = Block {
@@ -71,17 +90,7 @@ pub const CARD: Block = Block {
             5,
             ReadOnly,
             "Which channels speak another protocol than EnDat, what sets of the stream have, and further parts.",
-            &[
-                field("t_format", 0, 8, "", "T-format: bit n for channel n"),
-                field(
-                    "stream_additional_data",
-                    8,
-                    1,
-                    "",
-                    "1: sets of the stream have the additional data",
-                ),
-                field("features", 16, 16, "", "Parts that have no place in capabilities.features").bits(MORE_FEATURES),
-            ],
+            PROTOCOLS,
         ),
         word(
             "trigger_count",

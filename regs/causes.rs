@@ -6,7 +6,6 @@
 
 pub(crate) mod cause;
 pub mod endat;
-pub mod t_format;
 
 pub use cause::{Cause, CODES};
 
@@ -109,7 +108,6 @@ mod tests {
         }
         assert_eq!(of(CODES - 2), None);
         assert_eq!(endat::name(endat::COUNT), "unknown");
-        assert_eq!(t_format::name(t_format::COUNT), "unknown");
         assert_eq!(advice("frames_crc"), None);
     }
 }

@@ -34,7 +34,6 @@ mod recovery;
 mod register;
 mod result;
 pub mod service;
-pub mod t_format;
 #[cfg(feature = "alloc")]
 mod text;
 
@@ -46,12 +45,12 @@ pub use line::LINE;
 pub use named::{Named, Values};
 pub use outputs::{DIRECT, ERROR_CAUSES, INTERRUPT, INTERRUPT_EVENTS};
 pub use part::{Part, FEATURES, FEATURES_BITS, MORE_FEATURES};
+pub use protocols::t_format::T_FORMAT;
 pub use protocols::{Protocol, Protocols};
 pub use recovery::{COUNTER_SPACING, RECOVERY};
 pub use register::{Access, Block, Field, Register};
 pub use result::{EVIDENCE_FLAGS, INFO_FIRST, LINE_FLAGS, RESULT};
 pub use service::SERVICE;
-pub use t_format::T_FORMAT;
 
 /// Major, minor and patch version of the register map.
 pub const VERSION: [u8; 3] = [1, 0, 0];

@@ -1,7 +1,8 @@
 //! What there is to say of a protocol.
 
 use crate::causes::cause::Cause;
-use crate::{Field, Named, Part, Values, CARD};
+use crate::register::field;
+use crate::{Field, Named, Part, Values, CHANNELS_MAX};
 
 /// What card and host agree on of a protocol.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ pub struct ProtocolRow {
     pub word: &'static str,
     /// The same for who chooses among them.
     pub means: &'static str,
+    /// One that speaks it, with its article.
+    pub channel: &'static str,
     /// Whether its line has a clock.
     pub has_clock: bool,
     /// Its causes.
@@ -20,18 +23,20 @@ pub struct ProtocolRow {
     pub coded: &'static [Named],
     /// Blocks of registers that only its channels have.
     pub blocks: &'static [&'static str],
-    /// Fields that say or take something else than in EnDat, by their [`Field::by_protocol`].
+    /// Fields that say or take something else than in EnDat, by their [`Field::by_protocol`](field@Field::by_protocol).
     pub fields: &'static [OwnField],
-    /// Bit n of it: channel n speaks the protocol. None of EnDat, which the others speak.
-    pub channels: Option<&'static Field>,
-    /// What a card has that speaks it; none of EnDat.
+    /// Its field of `card.protocols`, bit n: channel n speaks it. None of EnDat, which the others speak.
+    pub channels: Option<Field>,
+    /// What a card has that speaks it, if its channels have words of their own.
     pub part: Option<Part>,
+    /// Low bits of a position that are the place within a turn, if no encoder tells it; all of them where nothing says what a turn is.
+    pub single_bits: Option<u32>,
 }
 
 /// What a field of all channels is in one protocol.
 #[derive(Debug)]
 pub struct OwnField {
-    /// Its [`Field::by_protocol`].
+    /// Its [`Field::by_protocol`](field@Field::by_protocol).
     pub field: &'static str,
     /// What its numbers or bits stand for.
     pub values: Values,
@@ -39,7 +44,20 @@ pub struct OwnField {
     pub takes: &'static [(u32, u32)],
 }
 
-/// The field of that name in `card.protocols`.
-pub(crate) const fn channels(word: &str) -> Option<&'static Field> {
-    Some(CARD.field("protocols", word))
+/// A field of `card.protocols`: a bit for each channel.
+pub(crate) const fn channels(word: &'static str, lsb: u32, meaning: &'static str) -> Option<Field> {
+    Some(field(word, lsb, CHANNELS_MAX as u32, "", meaning))
+}
+
+/// A row of [`ProtocolRow::fields`].
+pub(crate) const fn own(
+    field: &'static str,
+    values: Values,
+    takes: &'static [(u32, u32)],
+) -> OwnField {
+    OwnField {
+        field,
+        values,
+        takes,
+    }
 }

@@ -1,10 +1,13 @@
 //! The protocols that a channel may speak. One row has all that card and host agree on of a protocol: who works with results, registers and
 //! causes asks it, and knows none by name.
 
+pub mod ssi;
+pub mod t_format;
+
 use crate::causes::endat;
 use crate::protocol_row::{OwnField, ProtocolRow};
 use crate::register::is_same;
-use crate::{t_format, Block, Field, Values};
+use crate::{Block, Field, Values};
 
 /// What a channel speaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,12 +16,15 @@ pub enum Protocol {
     Endat,
     /// T-format.
     TFormat,
+    /// SSI.
+    Ssi,
 }
 
 const ENDAT: ProtocolRow = ProtocolRow {
     name: "EnDat",
     word: "endat",
     means: "EnDat 2.1/2.2",
+    channel: "an EnDat channel",
     has_clock: true,
     causes: endat::ALL,
     coded: endat::CODED,
@@ -26,17 +32,19 @@ const ENDAT: ProtocolRow = ProtocolRow {
     fields: &[],
     channels: None,
     part: None,
+    single_bits: None,
 };
 
 impl Protocol {
     /// All of them; EnDat is the first.
-    pub const ALL: &[Self] = &[Self::Endat, Self::TFormat];
+    pub const ALL: &[Self] = &[Self::Endat, Self::TFormat, Self::Ssi];
 
     /// What card and host agree on of it.
     pub const fn row(self) -> &'static ProtocolRow {
         match self {
             Self::Endat => &ENDAT,
             Self::TFormat => &t_format::PROTOCOL,
+            Self::Ssi => &ssi::PROTOCOL,
         }
     }
 
@@ -92,7 +100,7 @@ impl Protocols {
         let mut fields = 0;
         let mut at = 0;
         while at < Protocol::ALL.len() {
-            if let Some(channels) = Protocol::ALL[at].row().channels {
+            if let Some(channels) = &Protocol::ALL[at].row().channels {
                 fields |= channels.mask();
             }
             at += 1;
@@ -102,7 +110,7 @@ impl Protocols {
 
     /// With one channel that speaks a protocol.
     pub const fn with(self, channel: usize, protocol: Protocol) -> Self {
-        match protocol.row().channels {
+        match &protocol.row().channels {
             Some(channels) => Self(self.0 | 1 << (channels.lsb + channel as u32)),
             None => self,
         }
@@ -127,11 +135,34 @@ impl Protocols {
 
     /// Bit n: channel n speaks this protocol; of EnDat none has a bit.
     pub const fn channels(self, protocol: Protocol) -> u64 {
-        match protocol.row().channels {
+        match &protocol.row().channels {
             Some(field) => field.of(self.0) as u64,
             None => 0,
         }
     }
+}
+
+/// Fields of a word that says which channels speak what, beside `others`; lowest first.
+pub(crate) const fn fields<const N: usize>(others: &[Field]) -> [Field; N] {
+    let mut fields = [others[0]; N];
+    let (mut count, mut at) = (0, 0);
+    while at < Protocol::ALL.len() + others.len() {
+        let next = match at < others.len() {
+            true => Some(others[at]),
+            false => Protocol::ALL[at - others.len()].row().channels,
+        };
+        at += 1;
+        let Some(next) = next else { continue };
+        let mut place = count;
+        while place > 0 && fields[place - 1].lsb > next.lsb {
+            fields[place] = fields[place - 1];
+            place -= 1;
+        }
+        fields[place] = next;
+        count += 1;
+    }
+    assert!(count == N);
+    fields
 }
 
 impl Field {

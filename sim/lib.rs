@@ -14,6 +14,7 @@ pub mod rng;
 pub mod scenario;
 pub mod segments;
 pub mod shmoo;
+pub mod ssi;
 pub mod t_format;
 #[cfg(test)]
 mod test_receiver;

@@ -42,7 +42,9 @@ fn sources(folder: &Path) -> Vec<String> {
 fn preset(name: &str) -> Vec<Artifact> {
     match load_any_preset(name).unwrap() {
         Configuration::Card(card) => emit(&card).unwrap(),
-        Configuration::Receiver(receiver) => endat_gen::t_format::emit(&receiver).unwrap(),
+        Configuration::Receiver(receiver) => {
+            endat_gen::protocols::t_format::emit(&receiver).unwrap()
+        }
     }
 }
 

@@ -35,6 +35,7 @@ mod requests;
 mod service;
 mod shmoo;
 mod sim;
+mod ssi;
 mod strangers;
 mod stream;
 mod t_format;

@@ -7,10 +7,11 @@
 
 use crate::tools;
 use endat_gen::artifact::{sha256, Artifact};
+use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 const TABLE: &str = "tests/data/passed.toml";
 const HEAD: &str = "# Long checks that have passed, each with a digest of all that it saw (tests/passed.rs). Renew with: CI=true UPDATE_EXPECT=1 cargo test NAME\n";
@@ -18,16 +19,32 @@ const HEAD: &str = "# Long checks that have passed, each with a digest of all th
 const TURNS: u64 = 8;
 
 /// What a simulation of the core is made of.
-const CORE: [&str; 9] = [
+const CORE: [&str; 7] = [
     "regs",
     "hdl",
     "sim",
     "design",
     "gen/config",
     "gen/presets",
-    "gen/t_format/keys.rs",
-    "gen/t_format/reading.rs",
     "tests/host.rs",
+];
+/// Of that, what only channels of other protocols than EnDat are made of; and where else that is.
+const OF_OTHERS: [&str; 6] = [
+    "regs/protocols",
+    "hdl/protocols",
+    "sim/t_format",
+    "sim/ssi",
+    "gen/protocols",
+    "gen/other_protocol.rs",
+];
+/// What stands in tests that have such channels.
+const MEANS_OTHERS: [&str; 6] = [
+    "t_format",
+    "TFormat",
+    "Ssi",
+    "ssi_",
+    "mixed_protocols",
+    "PRESETS",
 ];
 
 /// Begins a test that simulates the core, and ends it if it has passed with just this core; given are other sources that it depends on.
@@ -65,7 +82,14 @@ impl Check {
     pub fn of_core(name: &str, file: &str) -> Self {
         let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
         let own = if folder == "tests" { file } else { folder };
-        Check::new(name).sources(&CORE).source(own)
+        let check = Check::new(name).source_but(own, &[]);
+        let has_others = MEANS_OTHERS.iter().any(|word| check.seen.contains(word));
+        match has_others {
+            true => check.sources(&CORE).sources(&OF_OTHERS),
+            false => CORE
+                .iter()
+                .fold(check, |check, path| check.source_but(path, &OF_OTHERS)),
+        }
     }
 
     pub fn text(mut self, text: &str) -> Self {
@@ -94,17 +118,29 @@ impl Check {
 
     /// What a file of the repository says, or all files of a folder but pages: of those that write scripts, models and benches.
     pub fn source(self, path: &str) -> Self {
+        self.source_but(path, &[])
+    }
+
+    /// The same without these files and folders.
+    fn source_but(self, path: &str, without: &[&str]) -> Self {
+        if without.contains(&path) {
+            return self;
+        }
         let full = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
         if full.is_file() {
-            return self.text(&fs::read_to_string(full).unwrap());
+            return self.text(&read_source(path));
         }
         let entries = fs::read_dir(&full).unwrap_or_else(|e| panic!("{path}: {e}"));
         let names = entries.map(|e| e.unwrap().file_name().into_string().unwrap());
         let mut names: Vec<String> = names.collect();
         names.retain(|name| !name.ends_with(".md") && name != "__pycache__");
+        // Tests of a crate decide nothing here.
+        if !path.starts_with("tests") {
+            names.retain(|name| !["tests", "tests.rs"].contains(&name.as_str()));
+        }
         names.sort();
         let inside = names.iter().map(|name| format!("{path}/{name}"));
-        inside.fold(self, |check, path| check.source(&path))
+        inside.fold(self, |check, path| check.source_but(&path, without))
     }
 
     /// All of these, see [`Check::source`].
@@ -159,6 +195,61 @@ impl Drop for Running {
             write(&self.name, &self.digest);
         }
     }
+}
+
+/// What a file says, as far as it decides something; each is read once.
+fn read_source(path: &str) -> Arc<str> {
+    static READ: Mutex<BTreeMap<String, Arc<str>>> = Mutex::new(BTreeMap::new());
+    if let Some(text) = READ.lock().unwrap().get(path) {
+        return text.clone();
+    }
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap();
+    let text: Arc<str> = match path.ends_with(".rs") {
+        true => meant(path, &text).into(),
+        false => text.into(),
+    };
+    READ.lock().unwrap().insert(path.into(), text.clone());
+    text
+}
+
+/// A source without what the compiler does not look at: comments, documentation, how it is laid out.
+fn meant(path: &str, text: &str) -> String {
+    fn write(tokens: TokenStream, out: &mut String) {
+        let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+        let mut at = 0;
+        while let Some(token) = tokens.get(at) {
+            at += 1;
+            if is(token, '#') {
+                let skips = usize::from(tokens.get(at).is_some_and(|next| is(next, '!')));
+                if tokens.get(at + skips).is_some_and(is_doc) {
+                    at += skips + 1;
+                    continue;
+                }
+            }
+            match token {
+                TokenTree::Group(group) => {
+                    *out += &format!("{:?} ", group.delimiter());
+                    write(group.stream(), out);
+                    *out += "end ";
+                }
+                other => *out += &format!("{other} "),
+            }
+        }
+    }
+    fn is(token: &TokenTree, mark: char) -> bool {
+        matches!(token, TokenTree::Punct(punct) if punct.as_char() == mark)
+    }
+    fn is_doc(token: &TokenTree) -> bool {
+        let TokenTree::Group(group) = token else {
+            return false;
+        };
+        let first = group.stream().into_iter().next();
+        first.is_some_and(|name| name.to_string() == "doc")
+    }
+    let tokens: TokenStream = text.parse().unwrap_or_else(|e| panic!("{path}: {e}"));
+    let mut out = String::new();
+    write(tokens, &mut out);
+    out
 }
 
 fn is_hardware(path: &str) -> bool {
@@ -250,6 +341,26 @@ fn a_digest_is_of_all_that_decides() {
     assert_ne!(is, Check::new("other").text(&is).seen);
     let source = Check::new("check").source("tests/passed.rs").seen;
     assert!(source.contains("fn a_digest_is_of_all_that_decides"));
+    let rust = |text: &str| meant("a.rs", text);
+    let plain = rust("fn a() { let b = 1; }");
+    for same in [
+        "//! About.\n/// Does.\nfn a() {\n    // Why.\n    let b = 1;\n}\n",
+        "#![doc = \"x\"]\n#[doc(hidden)]\nfn a(){let b=1;}",
+    ] {
+        assert_eq!(rust(same), plain);
+    }
+    for other in [
+        "fn a() { let b = 2; }",
+        "#[test] fn a() { let b = 1; }",
+        "fn a() { { let b = 1; } }",
+    ] {
+        assert_ne!(rust(other), plain);
+    }
+    // A change of another protocol makes nothing of EnDat due.
+    let of = |file| Check::of_core("check", file).seen;
+    let is_seen = |seen: &str| seen.contains("TFormatPort");
+    assert!(is_seen(&of("tests/t_format/budget.rs")));
+    assert!(!of("tests/alignment/tolerance.rs").contains("impl Default for TFormatPort"));
     assert_eq!(
         Check::new("check").source("tests/verilog").seen,
         Check::new("check").source("tests/verilog").seen

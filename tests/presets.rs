@@ -13,7 +13,7 @@ use endat_hdl::config::{CardConfig, ChannelConfig, StreamStart};
 use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS};
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::t_format::protocol::RATE_TOLERANCE_PPM;
+use endat_hdl::protocols::t_format::protocol::RATE_TOLERANCE_PPM;
 use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
 use endat_sim::encoder::EncoderConfig;
 use endat_sim::line::LineConfig;

@@ -8,7 +8,7 @@ use crate::service::REQUEST_PAUSE_US;
 use crate::settings::{put_at, values_at, Place};
 use embedded_hal::delay::DelayNs;
 use endat_regs::causes;
-use endat_regs::t_format::{request, RESETS_IN_A_ROW};
+use endat_regs::protocols::t_format::{self, request, RESETS_IN_A_ROW};
 use endat_regs::{Field, Protocol};
 
 /// An exchange is over after so long, whatever comes: the longest pauses that can be set, and all fields at the slowest bit.
@@ -47,7 +47,7 @@ pub struct Fields {
 pub struct TFormatSettings {
     /// A bit: [`Card::period_cycles`].
     pub bit_cycles: u32,
-    /// Request ID of a trigger, 0 to 3: `endat_regs::t_format::request`.
+    /// Request ID of a trigger, 0 to 3: `endat_regs::protocols::t_format::request`.
     pub request_id: u32,
     /// Pulses up to this length are ignored.
     pub filter_cycles: u32,
@@ -107,8 +107,8 @@ const OF_TRIGGERS: [u8; 4] = [
 ];
 /// These come with a good reply.
 const ALARMS: [u8; 2] = [
-    causes::number(causes::t_format::COUNTING_ERROR as u8, Protocol::TFormat),
-    causes::number(causes::t_format::MULTI_TURN_ALARM as u8, Protocol::TFormat),
+    causes::number(t_format::causes::COUNTING_ERROR as u8, Protocol::TFormat),
+    causes::number(t_format::causes::MULTI_TURN_ALARM as u8, Protocol::TFormat),
 ];
 const BUSY: &Field = field!(T_FORMAT.answer.busy);
 const DONE: &Field = field!(T_FORMAT.answer.done);
@@ -216,7 +216,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         request: [u8; 3],
         wait: &mut Wait,
     ) -> Result<u8, Error<L::Error>> {
-        let busy = causes::number(causes::t_format::EEPROM_BUSY as u8, Protocol::TFormat);
+        let busy = causes::number(t_format::causes::EEPROM_BUSY as u8, Protocol::TFormat);
         let mut is_in_time = true;
         loop {
             match self.exchange_within(channel, request, wait) {

@@ -196,7 +196,10 @@ pub fn core(
         Configuration::Receiver(receiver) => {
             let mut receiver = receiver.clone();
             receiver.initial_values &= flow.starts;
-            (receiver.name.clone(), crate::t_format::emit(&receiver)?)
+            (
+                receiver.name.clone(),
+                crate::protocols::t_format::emit(&receiver)?,
+            )
         }
     };
     Ok((name, files.into_iter().filter(is_core).collect()))

@@ -25,12 +25,12 @@ use endat_hdl::endat::receiver::Receiver;
 use endat_hdl::endat::second_receiver::SecondReceiver;
 use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::endat::transaction::{cause, Transaction};
-use endat_hdl::snapshot::Snapshot;
-use endat_hdl::t_format::{
+use endat_hdl::protocols::t_format::{
     channel::TFormatChannel,
     dsp::{AsyncDsp, TFormatStart},
     port::TFormatPort,
 };
+use endat_hdl::snapshot::Snapshot;
 use endat_regs::Protocol;
 use rtl_design::elaborate::{block_name, elaborate, Design};
 use rtl_design::verilog::file_name;

@@ -4,7 +4,7 @@ use super::comparison_table::{Basis, Table};
 use super::fault;
 use super::measured::area;
 use crate::error::GenError;
-use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
+use endat_hdl::protocols::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
 use endat_sim::decimal;
 
 /// Logic cells that a test compares with place and route.

@@ -36,7 +36,9 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
     let (configuration, folder) = arguments.emission.load()?;
     let mut artifacts = match &configuration {
         Configuration::Card(card) => crate::emit_in(card, language)?,
-        Configuration::Receiver(receiver) => crate::t_format::emit_in(receiver, language)?,
+        Configuration::Receiver(receiver) => {
+            crate::protocols::t_format::emit_in(receiver, language)?
+        }
     };
     if arguments.driver {
         add_driver(&configuration, &mut artifacts)?;

@@ -368,7 +368,9 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
             let shown = |report: &dyn Shown| report.shown(json).map(Outcome::good);
             match source.load_any_on(target.load()?.as_ref())? {
                 Configuration::Card(card) => shown(&explain::report(&card)),
-                Configuration::Receiver(receiver) => shown(&crate::t_format::report(&receiver)),
+                Configuration::Receiver(receiver) => {
+                    shown(&crate::protocols::t_format::report(&receiver))
+                }
             }
         }
         Some(Command::Schema(arguments)) => schema::run(&arguments),

@@ -6,7 +6,7 @@ use super::trigger;
 use crate::form::key::Key;
 use crate::other_protocol::Other;
 use endat_hdl::config::{ChannelSpec, START_WINDOW_BITS};
-use endat_hdl::endat::timing::{cycles_at_most, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
+use endat_hdl::endat::timing::cycles_at_most;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::protocols::Spoken;
 use endat_regs::Protocol;
@@ -136,38 +136,27 @@ pub fn read_endat(
     })
 }
 
-/// A channel that speaks another protocol; the numbers of EnDat in it mean nothing.
+/// A channel that speaks another protocol.
 pub fn read_other(
     other: &dyn Other,
     table: &Table<'_, '_>,
     system_hz: Option<u64>,
 ) -> Option<Channel> {
-    let encoder = read_encoder(table)?;
+    let encoder = read_encoder(table);
     let wanted = other.read(table, system_hz);
-    let (own, divider_line) = trigger::read_own(table)?;
+    let own = trigger::read_own(table);
+    let (encoder, wanted, (own, divider_line)) = (encoder?, wanted?, own?);
     let mut places = Places::new();
     places.insert(DIVIDER.name, (table.name(DIVIDER.name), divider_line));
     for (key, line) in wanted.lines {
         places.insert(key, (table.name(key), line));
     }
     places.insert("channel", (table.name(PROTOCOL.name), table.line));
-    let spec = ChannelSpec {
-        clock_hz: wanted.rate_hz,
-        calibration_hz: None,
-        tst_ns: 0,
-        command: ModeCommand::SendPosition,
-        position_bits: 0,
-        filter_ns: wanted.filter_ns,
-        start_window_ns: 0,
-        tcal_max_ns: 0,
-        recovery_min_ns: RECOVERY_MIN_NS,
-        recovery_max_ns: RECOVERY_MAX_NS,
-        cable_m: 0,
-        spoken: wanted.spoken,
-        trigger: own,
-    };
     Some(Channel {
-        spec,
+        spec: ChannelSpec {
+            trigger: own,
+            ..wanted.spec
+        },
         encoder,
         places,
     })

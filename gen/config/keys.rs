@@ -7,7 +7,8 @@ use crate::board;
 pub use crate::form::key::CHANNELS;
 use crate::form::key::{self, keys, Choice};
 pub use crate::form::key::{Key, Kind, Usual};
-use crate::t_format::keys as t_format_keys;
+use crate::protocols::ssi::keys as ssi;
+use crate::protocols::t_format::keys as t_format;
 use endat_hdl::card::stream::buffer::BUFFER_BYTES;
 use endat_hdl::config::{ERROR_TEST_MS, LIST};
 use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS};
@@ -20,6 +21,9 @@ const TOP: &[&str] = &[""];
 const CHANNEL: &[&str] = &[CHANNELS];
 /// Keys that `[endat]` gives for all channels and a `[[channel]]` may give for itself.
 const EITHER: &[&str] = &[COMMON, CHANNELS];
+
+/// Channels whose line has a clock.
+const CLOCKED: u8 = ENDAT_FORM | form(Protocol::Ssi);
 
 /// Longest name of an encoder, in characters: a column of a report.
 const ENCODER_MAX: usize = 40;
@@ -56,16 +60,16 @@ keys! {
     SYSTEM_HZ = Key::number(&["clock"], "system_hz", "clock of the core")
         .note("as far as the board's clock manager makes it").of(CARD_FORM).required("100_000_000");
 
-    CLOCK_HZ = Key::number(EITHER, "clock_hz", "EnDat clock")
+    CLOCK_HZ = Key::number(EITHER, "clock_hz", "clock on the line")
         .note("period 4 to 2047 system cycles (8 with continuous clock; also 2 with `double_edge` and without requests), within 5000 ppm; \
                may be left out in `[endat]` if each channel has its own")
-        .of(ENDAT_FORM).required("3_125_000");
+        .of(CLOCKED).required("3_125_000");
     CALIBRATION_HZ = Key::number(EITHER, "calibration_hz", "EnDat clock of the frames that measure the line delay")
         .note("up to `clock_hz`, as slow as 2047 system cycles to the period are; four fifths of its period must hold the delay of cable and \
                filter (655 kHz with 100 m and 20 ns)")
         .of(ENDAT_FORM).usual(Usual::Follows("200 kHz; 100 kHz with more than 380 m"));
     TST_NS = Key::number(EITHER, "tst_ns", "shortest first low phase tST")
-        .note("0 = none").of(ENDAT_FORM).usual(Usual::Follows("2000 from 1 MHz up, else 0"));
+        .note("0 = none").of(CLOCKED).usual(Usual::Follows("2000 from 1 MHz up, else 0; with SSI 0"));
     FILTER_NS = Key::number(EITHER, "filter_ns", "DATA must be stable this long before it counts")
         .note("up to half a period, at most 15 cycles (15.5, in steps of half a cycle, with `double_edge`); `explain` says how much is \
                recommended; 0 = no filter; a channel that speaks T-format has it, too: up to half a bit, default 50 ns")
@@ -78,20 +82,20 @@ keys! {
                at a clock pulse instead of a time needs more (at clock 15 and 200 kHz 28000)")
         .of(ENDAT_FORM).usual(Usual::Number(TCAL_MAX_NS));
     RECOVERY_MIN = Key::number(EITHER, "recovery_min_ns", "shortest recovery time tm of the encoder")
-        .note("from 10000; from 1250 with 111000 above 1 MHz")
-        .of(ENDAT_FORM).usual(Usual::Number(RECOVERY_MIN_NS));
+        .note("from 10000; from 1250 with 111000 above 1 MHz; with SSI at least one and a half clock periods")
+        .of(CLOCKED).usual(Usual::Number(RECOVERY_MIN_NS));
     RECOVERY_MAX = Key::number(EITHER, "recovery_max_ns", "longest recovery time tm of the encoder")
-        .note("from `recovery_min_ns`; with the cable at most 8159 cycles")
-        .of(ENDAT_FORM).usual(Usual::Number(RECOVERY_MAX_NS));
+        .note("from `recovery_min_ns`; with the cable at most 8159 cycles; with SSI the monoflop time, for which a trigger has to wait")
+        .of(CLOCKED).usual(Usual::Number(RECOVERY_MAX_NS));
     CABLE = Key::number(EITHER, "cable_m", "longest cable")
-        .note("above 204 MHz to 380").of(ENDAT_FORM).usual(Usual::Number(CABLE_M));
+        .note("above 204 MHz to 380").of(CLOCKED).usual(Usual::Number(CABLE_M));
 
     ENCODER = Key::text(CHANNEL, "encoder", "the encoder's name, for reports").note("characters that can be seen").at_most(ENCODER_MAX);
     PROTOCOL = Key::text(CHANNEL, "protocol", "what the encoder speaks")
-        .note("T-format channels have [keys of their own](#t-format) instead of `position_bits`, `command` and those of `[endat]`")
+        .note("[other protocols](#other-protocols) have keys of their own, and none of `[endat]`")
         .one_of(protocols).usual(Usual::Word(Protocol::Endat.row().word));
     POSITION_BITS = Key::number(CHANNEL, "position_bits", "width of the position, from the encoder's data sheet")
-        .of(ENDAT_FORM).required("29");
+        .of(CLOCKED).required("29");
     COMMAND = Key::text(CHANNEL, "command", "mode command that a trigger sends").one_of(commands).of(ENDAT_FORM).required("\"111000\"");
     ENABLED = Key::boolean(CHANNEL, "enabled", "whether the channel takes triggers")
         .note("this key or one of the next two in any `[[channel]]` gives all channels of the card their own trigger, which the host can change \
@@ -172,10 +176,26 @@ keys! {
         .named(board::signals).of(CARD_FORM).usual(Usual::Follows("the board's usual place"));
 }
 
+/// What only another protocol has, in the order of the page.
+const OTHER_KEYS: &[&[&Key]] = &[t_format::KEYS, ssi::KEYS];
+const COUNT: usize = {
+    let (mut count, mut at) = (COMMON_KEYS.len(), 0);
+    while at < OTHER_KEYS.len() {
+        count += OTHER_KEYS[at].len();
+        at += 1;
+    }
+    count
+};
+
 /// All of them, in the order of the page: those that only another protocol has come last.
 pub static KEYS: &[&Key] = &{
-    let parts = [COMMON_KEYS, t_format_keys::KEYS];
-    let mut all: [&Key; COMMON_KEYS.len() + t_format_keys::KEYS.len()] = [&NAME; _];
+    let mut parts = [COMMON_KEYS; 1 + OTHER_KEYS.len()];
+    let mut other = 0;
+    while other < OTHER_KEYS.len() {
+        parts[1 + other] = OTHER_KEYS[other];
+        other += 1;
+    }
+    let mut all: [&Key; COUNT] = [&NAME; _];
     let (mut next, mut part) = (0, 0);
     while part < parts.len() {
         let mut at = 0;
@@ -230,9 +250,13 @@ pub fn tables(forms: u8) -> Vec<&'static str> {
     tables
 }
 
-/// The tables of the page: keys of cards, and those that EnDat does not have.
-pub fn page() -> [String; 2] {
-    let (of_endat, others): (Vec<&Key>, Vec<&Key>) =
-        KEYS.iter().partition(|key| key.forms & ENDAT_FORM != 0);
-    [of_endat, others].map(key::page)
+/// The tables of the page: keys of cards, and for each other protocol those that EnDat does not have.
+pub fn page() -> Vec<String> {
+    let of_endat: Vec<&Key> = KEYS
+        .iter()
+        .copied()
+        .filter(|key| key.forms & ENDAT_FORM != 0)
+        .collect();
+    let others = OTHER_KEYS.iter().map(|keys| key::page(keys.to_vec()));
+    [key::page(of_endat)].into_iter().chain(others).collect()
 }

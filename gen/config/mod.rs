@@ -59,6 +59,10 @@ pub const PRESETS: &[(&str, &str)] = &[
         "mixed_protocols",
         include_str!("../presets/mixed_protocols.toml"),
     ),
+    (
+        "ssi_two_channel",
+        include_str!("../presets/ssi_two_channel.toml"),
+    ),
     ("demo", include_str!("../presets/demo.toml")),
 ];
 /// The presets of T-format receivers.
@@ -104,8 +108,12 @@ impl Project {
 
 /// Names of protocols, for titles.
 pub(crate) fn names(protocols: impl IntoIterator<Item = Protocol>) -> String {
-    let names: Vec<&str> = protocols.into_iter().map(|p| p.name()).collect();
-    names.join(" and ")
+    let mut names: Vec<&str> = protocols.into_iter().map(|p| p.name()).collect();
+    let last = names.pop().unwrap_or_default();
+    match names.is_empty() {
+        true => last.into(),
+        false => format!("{} and {last}", names.join(", ")),
+    }
 }
 
 /// Text of the preset with this name.

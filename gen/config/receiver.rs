@@ -9,10 +9,10 @@ use super::keys::{tables, BUS, CARD_FORM, CHANNELS, NAME, PROTOCOL, RECEIVER_FOR
 use super::reader::{Source, Table};
 use super::words::RECEIVER_BUS;
 use crate::form::key::Key;
-use crate::t_format::keys::{FIELD_GAP_US, FILTER_CYCLES, REPLY_GAP_US};
-use crate::t_format::reading::{read_bit_hz, read_request};
-use endat_hdl::t_format::dsp::TFormatStart;
-use endat_hdl::t_format::protocol::{BIT_HZ, FAST_BIT_HZ};
+use crate::protocols::t_format::keys::{FIELD_GAP_US, FILTER_CYCLES, REPLY_GAP_US};
+use crate::protocols::t_format::reading::{read_bit_hz, read_request};
+use endat_hdl::protocols::t_format::dsp::TFormatStart;
+use endat_hdl::protocols::t_format::protocol::{BIT_HZ, FAST_BIT_HZ};
 use endat_regs::Protocol;
 use toml::de::DeTable;
 

@@ -208,9 +208,9 @@ fn fields(items: &mut Vec<Item>, entry: &MapRegister, register: &str) {
         values(items, &name, field.values);
         for (protocol, special) in entry.values_elsewhere(field) {
             items.push(Item::Comment(format!(
-                "{}: on a {} channel",
+                "{}: on {}",
                 field.name,
-                protocol.name()
+                protocol.row().channel
             )));
             let suffix = protocol.row().word.to_ascii_uppercase();
             values(items, &format!("{name}_{suffix}"), special);

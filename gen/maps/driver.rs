@@ -4,8 +4,8 @@
 use super::{header, Map, MapBlock, MapRegister};
 use crate::artifact::Artifact;
 use crate::config::names;
+use endat_regs::protocols::t_format::RESETS_IN_A_ROW;
 use endat_regs::service::{request_state, NAME_PLATE, STEPS};
-use endat_regs::t_format::RESETS_IN_A_ROW;
 use endat_regs::{
     causes, Named, Protocol, BLOCKS, CHANNELS_MAX, ID, INFO_FIRST, MAP_BYTES, VERSION,
 };
@@ -133,7 +133,7 @@ fn write_limits(text: &mut String, block: &MapBlock) {
                 let (channel, suffix) = match protocol {
                     Protocol::Endat => Default::default(),
                     other => (
-                        format!(" on a {} channel", other.name()),
+                        format!(" on {}", other.row().channel),
                         format!("_{}", other.row().word.to_ascii_uppercase()),
                     ),
                 };

@@ -36,7 +36,7 @@ fn write_long_lists(text: &mut String, block: &MapBlock) {
             let own = (field.values, format!("`{}`", field.name));
             let others = entry.values_elsewhere(field).into_iter();
             let others = others.map(|(protocol, values)| {
-                let name = format!("`{}` on a {} channel", field.name, protocol.name());
+                let name = format!("`{}` on {}", field.name, protocol.row().channel);
                 (values, name)
             });
             for (values, name) in std::iter::once(own).chain(others) {

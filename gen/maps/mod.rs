@@ -181,7 +181,7 @@ impl MapRegister {
     pub fn elsewhere(&self, field: &Field) -> String {
         let all = self.values_elsewhere(field).into_iter();
         let shown = |(protocol, values): (Protocol, Values)| {
-            format!("; on a {} channel {}", protocol.name(), listed(values))
+            format!("; on {} {}", protocol.row().channel, listed(values))
         };
         all.map(shown).collect()
     }

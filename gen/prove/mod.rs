@@ -32,17 +32,20 @@ use endat_sim::diagram::waves_svg;
 use rtl_design::elaborate::properties::{of_label, properties, Begins, Property};
 use rtl_design::elaborate::{Design, Module};
 use rtl_design::verilog::as_printed;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use tools::Answer;
 
+/// The type of an encoder port.
+const ENCODER_PORT: &str = "EncoderPort";
 /// The type of an EnDat channel.
 const CHANNEL: &str = "Channel";
 
-/// Types of blocks that are proved with everything below them, each with all its inputs free; what is in one of them is not proved again.
-const PARTS: [&str; 8] = [
+/// Types of blocks that are proved with everything below them, each with all its inputs free; what is in one of them is not proved again. So is
+/// the port of another protocol, a block of an [`ENCODER_PORT`] that is called one.
+const PARTS: [&str; 7] = [
     CHANNEL,
-    "TFormatPort",
     "Exchange",
     "ChannelRegisters",
     "RegisterBank",
@@ -83,8 +86,8 @@ impl Subject {
 
     /// A receiver as it is emitted.
     pub fn receiver(receiver: &Receiver) -> Result<Self, GenError> {
-        let design = crate::t_format::design(receiver)?;
-        let files = crate::t_format::emit(receiver)?;
+        let design = crate::protocols::t_format::design(receiver)?;
+        let files = crate::protocols::t_format::emit(receiver)?;
         Ok(Self::of(&receiver.name, design, files))
     }
 
@@ -114,7 +117,14 @@ impl Subject {
 /// The modules that are proved, as [`PARTS`] says.
 fn parts(design: &Design) -> Vec<usize> {
     let (mut parts, mut inside) = (vec![], vec![]);
-    for part in PARTS {
+    let types = design
+        .modules
+        .iter()
+        .map(|module| module.type_name.as_str());
+    let ports: BTreeSet<&str> = types
+        .filter(|name| name.ends_with("Port") && *name != ENCODER_PORT)
+        .collect();
+    for part in ports.into_iter().chain(PARTS) {
         for (index, module) in design.modules.iter().enumerate() {
             if module.type_name == part && !inside.contains(&index) {
                 parts.push(index);

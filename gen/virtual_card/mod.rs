@@ -34,12 +34,12 @@ use crate::config::{load_file, load_preset, preset_of, Project, Receiver, DEFAUL
 use crate::error::GenError;
 use crate::other_protocol::OtherFaults;
 use crate::protocols::other;
-use crate::t_format::encoder as t_format_encoder;
-use crate::t_format::protocol::TFormat;
+use crate::protocols::t_format::encoder as t_format_encoder;
+use crate::protocols::t_format::protocol::TFormat;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::service_times;
 use endat_hdl::endat::service::program::ServiceTimes;
-use endat_hdl::t_format::protocol::SYSTEM_HZ as RECEIVER_HZ;
+use endat_hdl::protocols::t_format::protocol::SYSTEM_HZ as RECEIVER_HZ;
 use endat_host::owner::AnyCard;
 use endat_host::transport::Port;
 use endat_host::{Bridge, HostError, Transport};
@@ -254,7 +254,7 @@ impl VirtualCard {
                 receiver.name
             )));
         }
-        let design = crate::t_format::design(receiver)?;
+        let design = crate::protocols::t_format::design(receiver)?;
         let mut bench = Bench::new(compiled(&design)?, RECEIVER_HZ[0], Vec::new());
         let wanted = config.encoders.first().map(String::as_str);
         check_device(&TFormat, 0, wanted)?;

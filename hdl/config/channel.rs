@@ -241,7 +241,7 @@ const fn is_uneven(period: u64) -> bool {
 }
 
 /// The period in cycles, if the rate can be made well enough.
-fn check_clock(
+pub(crate) fn check_clock(
     check: &mut Check<'_>,
     clock_hz: u64,
     system_hz: u64,
@@ -323,7 +323,12 @@ fn check_clock(
 }
 
 /// Cycles that tST adds to the first half period.
-fn check_tst(check: &mut Check<'_>, request: &ChannelSpec, half: u64, system_hz: u64) -> u64 {
+pub(crate) fn check_tst(
+    check: &mut Check<'_>,
+    request: &ChannelSpec,
+    half: u64,
+    system_hz: u64,
+) -> u64 {
     let tst = request.tst_ns;
     if tst == 0 {
         return 0;

@@ -15,14 +15,16 @@ mod spoken;
 
 pub(crate) use card::{frame_too_long, microseconds, TooLong};
 pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
-pub(crate) use channel::check_filter;
+pub(crate) use channel::{check_clock, check_filter, check_tst};
 pub use limits::{limits, Limits};
 pub use parts::{
     LineParts, OutputParts, PhaseSource, SafetyParts, ServiceParts, StreamParts, StreamStart,
     ERROR_TEST_MS,
 };
 
-use crate::endat::timing::{calibration_hz, TST_FROM_HZ, TST_USUAL_NS};
+use crate::endat::timing::{
+    calibration_hz, RECOVERY_MAX_NS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
+};
 use crate::protocol::ModeCommand;
 use crate::protocols::Spoken;
 use endat_regs::{CARD_CONFIG, CHANNELS_MAX, CHANNEL_CONFIG, LINE};
@@ -101,7 +103,7 @@ pub struct ChannelSpec {
     pub recovery_max_ns: u64,
     /// Longest cable, in metres.
     pub cable_m: u64,
-    /// What the channel speaks; if that is not EnDat, of the other numbers only `filter_ns` counts.
+    /// What the channel speaks; of the other numbers each protocol takes what its encoders have, T-format `filter_ns` only.
     pub spoken: Spoken,
     /// Which triggers the channel takes; if all channels say nothing about it, every one takes all, and there is no logic for another choice.
     pub trigger: Option<OwnTrigger>,
@@ -305,7 +307,8 @@ pub struct ChannelConfig {
     /// Quiet time after an aborted transfer, in microseconds.
     pub abort_us: u64,
     /// What the channel speaks. In T-format `period_cycles` is a bit, `start_timeout_us` the longest pause before the reply, and of the
-    /// other numbers only `filter_cycles` counts.
+    /// other numbers only `filter_cycles` counts; in SSI `command`, `start_window_cycles` and the three times from `start_timeout_us` on but
+    /// the recovery time mean nothing.
     pub spoken: Spoken,
     /// What was asked for, for reports.
     pub spec: ChannelSpec,
@@ -362,6 +365,25 @@ pub struct FrameTime {
 }
 
 impl ChannelSpec {
+    /// Of a channel that speaks this: nothing else is asked for yet.
+    pub const fn speaking(spoken: Spoken) -> Self {
+        Self {
+            clock_hz: 0,
+            calibration_hz: None,
+            tst_ns: 0,
+            command: ModeCommand::SendPosition,
+            position_bits: 0,
+            filter_ns: 0,
+            start_window_ns: 0,
+            tcal_max_ns: 0,
+            recovery_min_ns: RECOVERY_MIN_NS,
+            recovery_max_ns: RECOVERY_MAX_NS,
+            cable_m: 0,
+            spoken,
+            trigger: None,
+        }
+    }
+
     /// Longest propagation delay tD of the line, in ns (PWM 20).
     pub const fn delay_max_ns(&self) -> u64 {
         delay_max_ns(self.cable_m)

@@ -1,7 +1,7 @@
 //! What a channel speaks, in cycles.
 
 use super::*;
-use crate::protocols::Spoken;
+use crate::protocols::{of_spoken, Spoken};
 use endat_regs::{Protocol, Protocols};
 
 impl Spoken {
@@ -12,10 +12,11 @@ impl Spoken {
         system_hz: u64,
         double_edge: bool,
     ) -> Option<ChannelConfig> {
-        match self {
-            Self::Endat => ChannelConfig::of_endat(check, request, system_hz, double_edge),
-            Self::TFormat(wanted) => wanted.resolve(check, request, system_hz),
-        }
+        of_spoken!(
+            self,
+            ChannelConfig::of_endat(check, request, system_hz, double_edge),
+            asked => asked.resolve(check, request, system_hz)
+        )
     }
 }
 
@@ -49,18 +50,20 @@ impl ChannelConfig {
 
     /// Shortest time between two triggers in the worst case, in system clock cycles.
     pub fn cycle_max_cycles(&self, system_hz: u64) -> u64 {
-        match &self.spoken {
-            Spoken::Endat => self.frame_cycle_max_cycles(system_hz),
-            Spoken::TFormat(request) => request.exchange_cycles(self.period_cycles, system_hz),
-        }
+        of_spoken!(
+            &self.spoken,
+            self.frame_cycle_max_cycles(system_hz),
+            asked => asked.cycle_max_cycles(self, system_hz)
+        )
     }
 
     /// Why a trigger would come before the channel is ready, and the remedy.
     pub(crate) fn too_long(&self, index: usize, times: TooLong) -> String {
-        match &self.spoken {
-            Spoken::Endat => frame_too_long(index, self, times),
-            Spoken::TFormat(request) => request.too_long(index, times),
-        }
+        of_spoken!(
+            &self.spoken,
+            frame_too_long(index, self, times),
+            asked => asked.too_long(index, self, times)
+        )
     }
 }
 

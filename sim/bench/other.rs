@@ -1,10 +1,10 @@
-//! Encoders of other protocols than EnDat, which have no clock on their line.
+//! Encoders of other protocols than EnDat.
 
-use super::pins::{DataPins, PinNames};
+use super::pins::{find, DataPins, PinNames};
 use super::Bench;
 use crate::{encoder::Drive, Time};
 use endat_hdl::regs::Protocol;
-use rtl_design::engine::Engine;
+use rtl_design::engine::{Engine, PortId};
 use std::any::Any;
 
 /// An encoder of another protocol than EnDat, at the end of one line.
@@ -14,6 +14,9 @@ pub trait OtherEncoder: Any + Send {
 
     /// The receiver does this to the line from `time` on.
     fn set_receiver(&mut self, time: Time, drive: Drive);
+
+    /// The receiver's clock is at this level from `time` on; of no meaning where the line has no clock.
+    fn set_clock(&mut self, _time: Time, _level: bool) {}
 
     /// Lets everything happen that is due by `time`; gives DATA at the receiver's pin.
     fn advance_to(&mut self, time: Time) -> bool;
@@ -35,6 +38,7 @@ pub trait OtherEncoder: Any + Send {
 pub(super) struct OtherPort {
     encoder: Box<dyn OtherEncoder>,
     ids: DataPins,
+    clock: Option<PortId>,
     data: Option<bool>,
 }
 
@@ -55,6 +59,9 @@ impl OtherPort {
             false => Drive::Released,
         };
         self.encoder.set_receiver(now, drive);
+        if let Some(clock) = self.clock {
+            self.encoder.set_clock(now, engine.get(clock) != 0);
+        }
     }
 }
 
@@ -64,6 +71,7 @@ impl<E: Engine> Bench<E> {
         self.others.push(OtherPort {
             encoder,
             ids: DataPins::find(names, self.engine.ports()),
+            clock: find(self.engine.ports(), &names.clock),
             data: None,
         });
         self.others.len() - 1

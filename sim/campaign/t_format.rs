@@ -10,7 +10,7 @@ use crate::{
     t_format::{Encoder, EncoderConfig},
     Time,
 };
-use endat_hdl::t_format::port::TFormatPort;
+use endat_hdl::protocols::t_format::port::TFormatPort;
 use rtl_design::elaborate::{elaborate, Design};
 use rtl_design::engine::{Keep, LaneWords, Lanes, PortId};
 use rust_hdl::prelude::Block;

@@ -5,12 +5,12 @@ use crate::{
     t_format::{Defect, EncoderConfig},
     Time, MS, US,
 };
-use endat_hdl::regs::Protocol;
-use endat_hdl::t_format::{
+use endat_hdl::protocols::t_format::{
     cause,
     port::word,
     protocol::{Request, BIT_HZ, REPLY_GAP_US_MAX},
 };
+use endat_hdl::regs::Protocol;
 use rtl_design::engine::Engine;
 use std::fmt;
 

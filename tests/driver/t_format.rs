@@ -2,8 +2,9 @@
 
 use super::rig::Rig;
 use super::world::World;
-use endat_driver::regs::causes::{self, t_format as cause};
-use endat_driver::regs::t_format::request;
+use endat_driver::regs::causes;
+use endat_driver::regs::protocols::t_format::causes as cause;
+use endat_driver::regs::protocols::t_format::request;
 use endat_driver::regs::Protocol;
 use endat_driver::{Card, Error, TFormatSettings, Uart};
 use endat_gen::config::{parse, preset, Project};

@@ -18,7 +18,7 @@ use endat_hdl::card::Card;
 use endat_hdl::config::OutputParts;
 use endat_hdl::endat::channel::{Channel, FixedTimes};
 use endat_hdl::endat::sequencer::Sequencer;
-use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
+use endat_hdl::protocols::t_format::dsp::{AsyncDsp, TFormatStart};
 use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 use std::fs;

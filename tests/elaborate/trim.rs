@@ -55,7 +55,9 @@ fn difference(whole: &Design, trimmed: &Design, seed: u64) -> Option<String> {
 fn design(configuration: &Configuration) -> Design {
     match configuration {
         Configuration::Card(project) => endat_gen::design(project).unwrap(),
-        Configuration::Receiver(receiver) => endat_gen::t_format::design(receiver).unwrap(),
+        Configuration::Receiver(receiver) => {
+            endat_gen::protocols::t_format::design(receiver).unwrap()
+        }
     }
 }
 

@@ -189,10 +189,11 @@ fn wrong_cards() -> Vec<(String, String, Table)> {
             let is_receiver = base["name"].as_str() == Some("receiver");
             let channel = base[CHANNELS].as_array().unwrap()[0].as_table().unwrap();
             let speaks = channel.get("protocol").and_then(Value::as_str);
-            let form = match speaks {
-                _ if is_receiver => keys::RECEIVER_FORM,
-                Some("t_format") => keys::form(Protocol::TFormat),
-                _ => keys::ENDAT_FORM,
+            let mut all = Protocol::ALL.iter();
+            let spoken = all.find(|p| Some(p.row().word) == speaks);
+            let form = match is_receiver {
+                true => keys::RECEIVER_FORM,
+                false => keys::form(*spoken.unwrap_or(&Protocol::Endat)),
             };
             if key.tables.contains(&CHANNELS) && key.forms & form == 0 {
                 let (mut from, own_table) = base_of(key);

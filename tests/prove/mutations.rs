@@ -104,5 +104,11 @@ pub const MUTATIONS: &[(Mutation, &str)] = &[
     (mutation("the age goes on while it is read", "register_bank", "show = !read_before", "show = 1'b1"), "read_is_one_moment"),
     (mutation("a word follows by itself", "channel_registers_1", "held_3_next = held_3;", "held_3_next = word_3;"), "held_together"),
     (mutation("the age shown goes on", "channel_registers_1", "if (show) begin", "if (1'b1) begin"), "age_while_shown"),
+    (mutation("the clock rests LOW", "ssi_port", "clk_next = 1'b1;", "clk_next = !is_last;"), "rests_high"),
+    (mutation("two results of a frame", "ssi_port", "ended_next = 1'b0;", "ended_next = (state == AT_RECOVERY) & !filter_level;"), "one_result"),
+    (mutation("clocked on a line that is LOW", "ssi_port", "if (frame[2] & filter_level) begin", "if (frame[2]) begin"), "only_on_high"),
+    (mutation("one count goes on", "ssi_port", "left_too_next = left_too - 6'd1;", "left_too_next = left_too;"), "counted_twice"),
+    (mutation("a bit stored inverted", "ssi_port", "word_next = {word[46:0], value};", "word_next = {word[46:0], !value};"), "as_it_came"),
+    (mutation("copies not compared", "ssi_port", "frame[1] & (word != again)", "frame[1] & (word[0] != again[0])"), "good_is_whole"),
     (mutation("a result owed for every strobe", "channel_registers_1", "waiting_next = 1'b0;", "waiting_next = trigger;"), "owed_once"),
 ];

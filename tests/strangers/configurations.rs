@@ -128,7 +128,7 @@ pub fn emission(name: &str, text: &str) -> Emission {
     let configuration = parse_any(&format!("{name}.toml"), text).unwrap();
     let files = match &configuration {
         Configuration::Card(card) => endat_gen::emit(card),
-        Configuration::Receiver(receiver) => endat_gen::t_format::emit(receiver),
+        Configuration::Receiver(receiver) => endat_gen::protocols::t_format::emit(receiver),
     };
     Emission {
         configuration,

@@ -7,7 +7,7 @@ use crate::verilog::is_core;
 use endat_gen::area::{subjects, synthesise, ECP5, ICE40, XC6S};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_any_preset, Configuration};
-use endat_gen::t_format::emit;
+use endat_gen::protocols::t_format::emit;
 use std::fs;
 
 /// LUTs of four inputs and flip-flops of Microchip's T-Format interface.

@@ -4,7 +4,7 @@ use crate::verilog::mutations::{mutation, Mutation};
 use crate::verilog::testbench::{bench_passes, check_mutations};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse_any, preset, Configuration};
-use endat_gen::t_format::emit;
+use endat_gen::protocols::t_format::emit;
 
 /// The preset with other keys.
 fn emitted(changes: &[(&str, &str)]) -> Vec<Artifact> {

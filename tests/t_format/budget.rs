@@ -2,8 +2,8 @@
 //! nobody drives against the encoder, and no byte of an EEPROM is written that nobody asked for.
 
 use crate::passed::once_for_this_core;
-use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
-use endat_hdl::t_format::port::TFormatPort;
+use endat_hdl::protocols::t_format::dsp::{AsyncDsp, TFormatStart};
+use endat_hdl::protocols::t_format::port::TFormatPort;
 use endat_sim::encoder::Drive;
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{Encoder, EncoderConfig};

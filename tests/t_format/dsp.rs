@@ -1,7 +1,7 @@
 //! The bus of the signal processor.
 
 use super::rig::Rig;
-use endat_hdl::t_format::dsp::TFormatStart;
+use endat_hdl::protocols::t_format::dsp::TFormatStart;
 use endat_sim::t_format::EncoderConfig;
 
 fn asked() -> Rig {

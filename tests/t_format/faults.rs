@@ -2,7 +2,7 @@
 
 use super::rig::{Map, Rig};
 use crate::passed::once_for_this_core;
-use endat_hdl::t_format::{cause, protocol::Request};
+use endat_hdl::protocols::t_format::{cause, protocol::Request};
 use endat_sim::t_format::{Defect, EncoderConfig};
 
 fn config(defect: Defect) -> EncoderConfig {

@@ -2,7 +2,7 @@
 
 use crate::passed::once_for_this_core;
 use crate::tools::third;
-use endat_hdl::t_format::{
+use endat_hdl::protocols::t_format::{
     channel::TFormatChannel,
     protocol::{control, crc},
 };
@@ -144,7 +144,7 @@ fn wrong_positions_from_glitches_are_within_the_bound_of_an_ideal_crc() {
     let mut lost = vec![];
     for system_mhz in [20, 60] {
         for inverts in [true, false] {
-            let reply = include_str!("../../hdl/t_format/reply.rs");
+            let reply = include_str!("../../hdl/protocols/t_format/reply.rs");
             for &pulses in third(&[[1, 1], [2, 2], [1, 4], [3, 8]], reply.len()) {
                 // Up to half a bit: none of them passes unseen. Up to a bit: some are as long as a bit can be.
                 for (width, share) in [([50_000, 200_000], 2_000), ([50_000, 400_000], 256)] {

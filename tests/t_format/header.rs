@@ -2,7 +2,7 @@
 
 use super::lanes::{kind_reply, levels, Conditions, Many, Sent, BIT, LANES};
 use crate::passed::once_for_this_core;
-use endat_hdl::t_format::cause;
+use endat_hdl::protocols::t_format::cause;
 
 const FRAMES: usize = 100_000;
 

@@ -1,6 +1,6 @@
 //! Many frames at once: each lane has its own encoder's edges, all lanes the same request.
 
-use endat_hdl::t_format::{channel::TFormatChannel, protocol::control};
+use endat_hdl::protocols::t_format::{channel::TFormatChannel, protocol::control};
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{edges, Wire};
 use endat_sim::Time;

@@ -1,7 +1,7 @@
 //! The receiver behind its bus, a signal processor and an encoder on its line.
 
 use crate::three_way::Stimulus;
-use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
+use endat_hdl::protocols::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_sim::encoder::Drive;
 use endat_sim::t_format::{Encoder, EncoderConfig};
 use endat_sim::Time;

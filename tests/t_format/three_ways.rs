@@ -3,7 +3,7 @@
 use super::rig::{design, Rig};
 use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
-use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
+use endat_hdl::protocols::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{Defect, EncoderConfig};
 use rtl_design::kernel_engine;

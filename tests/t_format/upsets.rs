@@ -1,7 +1,7 @@
 //! Every state that a T-format port can be brought into, reached or not: the next triggers work, nothing hangs.
 
 use crate::passed::once_for_this_core;
-use endat_hdl::t_format::{channel::TFormatChannel, port::TFormatPort};
+use endat_hdl::protocols::t_format::{channel::TFormatChannel, port::TFormatPort};
 use endat_sim::encoder::Drive;
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{Encoder, EncoderConfig};

@@ -1,8 +1,8 @@
 //! Published frames: what a real encoder sent is what the receiver says.
 
 use super::rig::Rig;
-use endat_hdl::t_format::cause;
-use endat_hdl::t_format::protocol::{crc, Request};
+use endat_hdl::protocols::t_format::cause;
+use endat_hdl::protocols::t_format::protocol::{crc, Request};
 use endat_sim::t_format::EncoderConfig;
 
 /// Bytes and CRC of each published frame.

@@ -21,7 +21,9 @@ const STANDARDS: [&str; 2] = ["--std=93", "--std=08"];
 fn emission(configuration: &Configuration) -> Vec<Artifact> {
     match configuration {
         Configuration::Card(card) => endat_gen::emit_in(card, Language::Vhdl),
-        Configuration::Receiver(receiver) => endat_gen::t_format::emit_in(receiver, Language::Vhdl),
+        Configuration::Receiver(receiver) => {
+            endat_gen::protocols::t_format::emit_in(receiver, Language::Vhdl)
+        }
     }
     .unwrap()
 }

@@ -66,7 +66,7 @@ impl Emission {
             Configuration::Card(card) => (Subject::new(card)?, crate::emit(card)?),
             Configuration::Receiver(receiver) => (
                 Subject::receiver(receiver)?,
-                crate::t_format::emit(receiver)?,
+                crate::protocols::t_format::emit(receiver)?,
             ),
         };
         let bench = files.into_iter().find(is_bench).ok_or_else(|| {

@@ -109,7 +109,7 @@ pub fn text(typed: &str) -> Result<String, GenError> {
                     let own = &full(block, register);
                     value_text(&mut values, name, own, field, field.values);
                     for (protocol, others) in field.values_elsewhere() {
-                        let own = format!("a {} channel's {own}", protocol.name());
+                        let own = format!("{}'s {own}", protocol.row().channel);
                         value_text(&mut values, name, &own, field, others);
                     }
                 }
@@ -213,7 +213,7 @@ fn field_text(text: &mut String, field: &Field) {
     );
     values_text(text, field.values);
     for (protocol, values) in field.values_elsewhere() {
-        let _ = writeln!(text, "         on a {} channel:", protocol.name());
+        let _ = writeln!(text, "         on {}:", protocol.row().channel);
         values_text(text, values);
     }
 }

@@ -5,7 +5,7 @@ use crate::config::keys::{self, Key, TABLES};
 use crate::config::words::RECEIVER_BUS;
 use crate::form::key::Kind;
 use crate::json_schema::plain;
-use crate::t_format::keys::BIT_RATE;
+use crate::protocols::t_format::keys::BIT_RATE;
 use endat_hdl::card::bus::HostBus;
 use endat_regs::Protocol;
 use std::collections::BTreeMap;
@@ -74,6 +74,11 @@ pub fn form_of(answers: &Answers) -> u8 {
         Some(protocol) => keys::form(*protocol),
         None => keys::ENDAT_FORM,
     }
+}
+
+/// A channel that speaks what was answered has this key.
+fn is_of_form(key: &Key, answers: &Answers) -> bool {
+    key.forms & form_of(answers) != 0
 }
 
 /// An EnDat channel of a card.
@@ -171,31 +176,35 @@ pub static QUESTIONS: &[Question] = &[
     Question {
         name: "position-bits",
         of: Of::Key(&keys::POSITION_BITS, keys::CHANNELS),
-        is_asked: is_endat,
+        is_asked: |answers| is_of_form(&keys::POSITION_BITS, answers),
         usual: |_| vec![example(&keys::POSITION_BITS)],
     },
     Question {
         name: "command",
         of: Of::Key(&keys::COMMAND, keys::CHANNELS),
-        is_asked: is_endat,
+        is_asked: |answers| is_of_form(&keys::COMMAND, answers),
         usual: |_| vec![example(&keys::COMMAND)],
     },
     Question {
         name: "clock-hz",
         of: Of::Key(&keys::CLOCK_HZ, keys::COMMON),
-        is_asked: is_endat,
-        usual: |answers| of_board(answers, |start| start.clock_hz, &CLOCK_HZ),
+        is_asked: |answers| is_of_form(&keys::CLOCK_HZ, answers),
+        usual: |answers| match is_endat(answers) {
+            true => of_board(answers, |start| start.clock_hz, &CLOCK_HZ),
+            // Every encoder takes it.
+            false => numbers(&[500_000, 250_000]),
+        },
     },
     Question {
         name: "cable-m",
         of: Of::Key(&keys::CABLE, keys::COMMON),
-        is_asked: is_endat,
+        is_asked: |answers| is_of_form(&keys::CABLE, answers),
         usual: |_| numbers(&[keys::CABLE.usual_number(), 10, 0]),
     },
     Question {
         name: "bit-hz",
         of: Of::Key(&BIT_RATE, keys::CHANNELS),
-        is_asked: |answers| BIT_RATE.forms & form_of(answers) != 0,
+        is_asked: |answers| is_of_form(&BIT_RATE, answers),
         usual: |_| numbers(&[BIT_RATE.usual_number()]),
     },
     Question {

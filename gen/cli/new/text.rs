@@ -85,8 +85,11 @@ fn about(key: &Key) -> String {
 
 /// What was answered for a key of a table.
 fn answer(answers: &Answers, key: &Key, table: &str) -> Option<String> {
+    // Other protocols have no table for all channels.
+    let is_for_each = table == CHANNELS && form_of(answers) != ENDAT_FORM;
+    let is_moved = |its: &str| is_for_each && its == COMMON;
     let found = QUESTIONS.iter().find(|question| match question.of {
-        Of::Key(other, its) => other.name == key.name && its == table,
+        Of::Key(other, its) => other.name == key.name && (its == table || is_moved(its)),
         Of::Channels => false,
     })?;
     let told = answers.get(found.name)?;
@@ -102,7 +105,8 @@ fn table(text: &mut String, answers: &Answers, table: &str, forms: u8, is_told: 
         .iter()
         .filter(|key| key.tables.contains(&table) && key.forms & forms != 0);
     // What all channels have alike is said for all of them.
-    let is_for_all = |key: &Key| table == CHANNELS && key.tables.contains(&COMMON);
+    let is_for_all =
+        |key: &Key| table == CHANNELS && forms == ENDAT_FORM && key.tables.contains(&COMMON);
     let keys = keys.copied().filter(|key| !is_for_all(key));
     let bus = answers.get("bus").and_then(|name| HostBus::from_name(name));
     let is_of_bus = |key: &&Key| bus.is_none_or(|bus| takes(bus, key));

@@ -1,9 +1,9 @@
 use super::*;
 use crate::card::Card;
 use crate::config::CardConfig;
+use crate::protocols::t_format::cause;
 use crate::regs::tests::{mixed_config, test_config};
 use crate::regs::{Access, Block as RegisterBlock, CARD, CARD_CONFIG, RESULT, T_FORMAT};
-use crate::t_format::cause;
 use crate::testing::tick;
 use rust_hdl::prelude::Block;
 

@@ -1,8 +1,8 @@
 //! What can go wrong on a T-format channel has its cause in the card's result, and leaves the other channel alone.
 
 use super::*;
+use endat_hdl::protocols::t_format::cause;
 use endat_hdl::regs::Protocol;
-use endat_hdl::t_format::cause;
 use endat_sim::t_format::Defect;
 
 #[test]

@@ -1,8 +1,8 @@
 //! The EEPROM of a T-format encoder, while triggers go on.
 
 use super::*;
-use endat_hdl::t_format::cause;
-use endat_hdl::t_format::protocol::EEPROM_PAGE_ADDRESS;
+use endat_hdl::protocols::t_format::cause;
+use endat_hdl::protocols::t_format::protocol::EEPROM_PAGE_ADDRESS;
 use endat_sim::rng::Rng;
 
 #[test]

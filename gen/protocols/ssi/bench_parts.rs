@@ -1,0 +1,109 @@
+//! The SSI encoders of a test bench: who is on which line, and what the bench does with them.
+
+use crate::error::GenError;
+use crate::other_protocol::BenchParts;
+use crate::template;
+use crate::testbench::text::{real, whole};
+use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::endat::channel::TIMESTAMP_TO_FIRST_FALL_CYCLES;
+use endat_hdl::endat::timing::cycles_to_ns;
+use endat_hdl::protocols::ssi::cause;
+use endat_hdl::protocols::ssi::protocol::{bit_delay_most_ns, clocks};
+use endat_hdl::protocols::SsiSpec;
+use endat_regs::Protocol;
+use minijinja::context;
+use minijinja::value::Serde;
+use serde::Serialize;
+
+/// After a frame that went wrong the line is HIGH at the latest after this beyond the recovery time, in ns.
+pub(crate) const IDLE_NS: u64 = 0;
+/// The encoders' own share of the delay of a bit, in ns.
+const BIT_DELAY_NS: u64 = 100;
+
+/// A channel and the encoder on it.
+#[derive(Serialize)]
+struct Port {
+    index: usize,
+    position_bits: u32,
+    gray: u8,
+    twice: u8,
+    bit_delay_ns: String,
+    tm_ns: String,
+    cable_ns: String,
+    half_ns: String,
+    first_low_ns: String,
+    #[serde(skip)]
+    mask: String,
+}
+
+impl Port {
+    fn new(card: &CardConfig, index: usize, channel: &ChannelConfig, asked: &SsiSpec) -> Self {
+        let ns = |cycles: u64| cycles_to_ns(cycles, card.system_hz);
+        let most_ns =
+            bit_delay_most_ns(channel.period_cycles, channel.filter_cycles, card.system_hz);
+        // The longest cable that is allowed for: both ways belong to the delay of a bit.
+        let cable_ns = (most_ns - BIT_DELAY_NS) as f64 / 2.0;
+        Self {
+            index,
+            position_bits: channel.position_bits,
+            gray: asked.gray.into(),
+            twice: asked.twice.into(),
+            bit_delay_ns: whole(BIT_DELAY_NS),
+            tm_ns: whole(channel.spec.recovery_max_ns),
+            cable_ns: real(cable_ns.floor() - 0.7),
+            half_ns: whole(ns(channel.period_cycles / 2)),
+            first_low_ns: whole(ns(
+                channel.period_cycles / 2 + channel.first_low_extra_cycles
+            )),
+            mask: format!("{:012X}", (1u64 << channel.position_bits) - 1),
+        }
+    }
+}
+
+/// What the bench of a card with SSI channels has besides.
+pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError> {
+    let channels = card.channels.iter().enumerate();
+    let speakers = channels.filter_map(|(n, c)| Some((n, c, c.spoken.ssi()?)));
+    let frames = speakers.clone();
+    let frames =
+        frames.map(|(_, c, asked)| c.period_cycles * clocks(c.position_bits.into(), asked.twice));
+    let shortest_cycles = frames.min().unwrap_or(0);
+    let ports: Vec<Port> = speakers
+        .map(|(n, c, asked)| Port::new(card, n, c, asked))
+        .collect();
+    let masks = ports.iter().map(|p| (p.index, p.mask.clone())).collect();
+    let numbers = ports.iter().map(|p| p.index).collect();
+    let context = context! {
+        name,
+        sleeps,
+        channels => Serde(ports),
+        count => card.channels.len(),
+        data_not_high => cause::DATA_NOT_HIGH,
+        data_not_low_after => cause::DATA_NOT_LOW_AFTER,
+        copies_differ => cause::COPIES_DIFFER,
+        trigger_overrun => cause::TRIGGER_OVERRUN,
+        clock_pin_cycles => TIMESTAMP_TO_FIRST_FALL_CYCLES,
+        system_ns => real(1e9 / card.system_hz as f64),
+    };
+    let part = |name: &str, text: &str| template::render(name, text, &context);
+    Ok(BenchParts {
+        name: Protocol::Ssi.name(),
+        word: Protocol::Ssi.row().word,
+        channels: numbers,
+        encoder: part(
+            "ssi_encoder",
+            include_str!("../../templates/ssi_encoder.v.jinja"),
+        )?,
+        ports: part(
+            "ssi_ports",
+            include_str!("../../templates/ssi_ports.v.jinja"),
+        )?,
+        steps: part(
+            "ssi_steps",
+            include_str!("../../templates/ssi_steps.v.jinja"),
+        )?,
+        silent: vec![],
+        masks,
+        shortest_cycles,
+    })
+}

@@ -1,0 +1,129 @@
+//! What a channel that speaks SSI becomes.
+
+use crate::explain::rate::{rate, us_of, Rate};
+use crate::other_protocol::OtherReport;
+use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::protocols::ssi::protocol::{bit_delay_most_ns, clocks};
+use endat_hdl::protocols::SsiSpec;
+use endat_regs::Protocol;
+use endat_sim::decimal;
+use serde::Serialize;
+use serde_json::json;
+use std::fmt::{self, Write};
+
+/// One SSI channel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SsiReport {
+    /// Encoder, for people.
+    pub encoder: String,
+    /// Protocol.
+    pub protocol: &'static str,
+    /// Clock on the line.
+    pub clock: Rate,
+    /// Its period in system clock cycles.
+    pub period_cycles: u64,
+    /// Width of the position.
+    pub position_bits: u32,
+    /// It comes in Gray code.
+    pub gray: bool,
+    /// It comes twice, and both are compared.
+    pub twice: bool,
+    /// Falling edges of the clock in a frame.
+    pub clocks: u64,
+    /// From its first edge to the result, in microseconds.
+    pub frame_us: f64,
+    /// Longest time from a clock edge to its bit, both ways along the cable included, in ns.
+    pub bit_delay_max_ns: u64,
+    /// Longest recovery time (monoflop time), in microseconds.
+    pub recovery_max_us: f64,
+    /// Both, and the cable: what the configuration is checked against, in microseconds.
+    pub cycle_us: f64,
+    /// Sampling rate that it allows, in hertz.
+    pub worst_case_sampling_hz: f64,
+    /// Pulses up to this are ignored, in ns.
+    pub filter_ns: f64,
+}
+
+impl SsiReport {
+    pub(super) fn new(
+        card: &CardConfig,
+        config: &ChannelConfig,
+        asked: &SsiSpec,
+        encoder: &str,
+    ) -> Self {
+        let us = |cycles: u64| us_of(cycles, card.system_hz);
+        let cycles = config.cycle_max_cycles(card.system_hz);
+        let cycle_us = us(cycles);
+        Self {
+            encoder: encoder.into(),
+            protocol: Protocol::Ssi.row().word,
+            clock: Rate::new(config.spec.clock_hz, config.actual_hz(card.system_hz)),
+            period_cycles: config.period_cycles,
+            position_bits: config.position_bits,
+            gray: asked.gray,
+            twice: asked.twice,
+            clocks: clocks(config.position_bits.into(), asked.twice),
+            frame_us: us(cycles - config.recovery_limit_cycles),
+            bit_delay_max_ns: bit_delay_most_ns(
+                config.period_cycles,
+                config.filter_cycles,
+                card.system_hz,
+            ),
+            recovery_max_us: config.spec.recovery_max_ns as f64 / 1e3,
+            cycle_us,
+            worst_case_sampling_hz: 1e6 / cycle_us,
+            filter_ns: us(config.filter_cycles) * 1e3,
+        }
+    }
+
+    /// The same for a report of all channels.
+    pub(super) fn as_channel(&self, index: usize) -> OtherReport {
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        let _ = self.write(&mut text, index);
+        OtherReport {
+            data: json!(self),
+            text,
+        }
+    }
+
+    /// The lines of channel `index`.
+    fn write(&self, f: &mut String, index: usize) -> fmt::Result {
+        let encoder = match self.encoder.as_str() {
+            "" => String::new(),
+            encoder => format!(", {encoder}"),
+        };
+        writeln!(f, "{:<18} SSI{encoder}", format!("channel {index}"))?;
+        writeln!(
+            f,
+            "  clock            {}; {} cycles in a period",
+            rate(&self.clock, "Hz"),
+            self.period_cycles
+        )?;
+        let code = if self.gray { " in Gray code" } else { "" };
+        let twice = match self.twice {
+            true => ", sent twice and compared",
+            false => ", nothing to check it by: see twice",
+        };
+        writeln!(
+            f,
+            "  position         {} bits{code}{twice}; {} clocks, {} us to the result",
+            self.position_bits,
+            self.clocks,
+            decimal(self.frame_us, 1)
+        )?;
+        writeln!(
+            f,
+            "  bits             taken up to {} ns after their clock edge, cable both ways included",
+            self.bit_delay_max_ns
+        )?;
+        writeln!(
+            f,
+            "  longest cycle    {} us with a recovery time of {} us: {} Hz",
+            decimal(self.cycle_us, 1),
+            decimal(self.recovery_max_us, 1),
+            decimal(self.worst_case_sampling_hz.floor(), 0)
+        )?;
+        writeln!(f, "  input filter     {} ns", decimal(self.filter_ns, 1))
+    }
+}

@@ -1,0 +1,158 @@
+//! An SSI encoder at a virtual card: how it moves, and what can be wrong with it.
+
+use crate::other_protocol::{OtherFaults, Plugged};
+use crate::virtual_card::deed::Deed;
+use crate::virtual_card::settings::{VirtualConfig, NS_PER_M, SECOND};
+use endat_hdl::config::ChannelConfig;
+use endat_hdl::protocols::SsiSpec;
+use endat_sim::bench::OtherEncoder;
+use endat_sim::encoder::Defect as Wanted;
+use endat_sim::line::FaultKind;
+use endat_sim::ssi::{Defect, EncoderConfig, SsiLink, SsiMotion};
+use endat_sim::{Time, NS};
+use std::sync::Arc;
+
+/// An encoder of whatever width and code a channel is configured for.
+pub(crate) const DEVICES: &[&str] = &["SSI"];
+/// Steps of a turn, as usual encoders of 12 or 13 bits to the turn have them.
+const TURN_BITS: u32 = 13;
+
+/// What it and its line can do of the faults that there are.
+const FAULTS: [&str; 7] = [
+    "unplug",
+    "plug",
+    "crc (a bit of the second copy; of the only one it is a wrong position that nobody sees)",
+    "silent",
+    "slow",
+    "jitter",
+    "line stuck_low or open",
+];
+
+/// The encoder that a channel is configured for.
+fn fitting(channel: &ChannelConfig, asked: &SsiSpec, seed: u64) -> EncoderConfig {
+    let tm = channel.spec.recovery_max_ns * NS;
+    EncoderConfig {
+        position_bits: channel.position_bits,
+        gray: asked.gray,
+        repeats: asked.twice,
+        // Well within what is allowed, and longer than any clock's pause.
+        tm: tm * 3 / 4,
+        seed,
+        ..EncoderConfig::default()
+    }
+}
+
+/// One that turns evenly.
+fn motion(channel: usize, position_bits: u32, speed: f64) -> SsiMotion {
+    let speed = speed * (1.0 + 0.5 * channel as f64);
+    let start = 0.1 * (channel + 1) as f64;
+    let steps = f64::from(1 << TURN_BITS.min(position_bits));
+    Arc::new(move |time: Time| {
+        let turns = start + speed * time as f64 / SECOND;
+        (turns * steps).max(0.0) as u64 & ((1 << position_bits) - 1)
+    })
+}
+
+/// One on its line, turning as others do.
+pub(crate) fn plug(
+    channel: &ChannelConfig,
+    asked: &SsiSpec,
+    n: usize,
+    is_open: bool,
+    config: &VirtualConfig,
+) -> Plugged {
+    let encoder = EncoderConfig {
+        jitter: config.jitter_ns as Time * NS,
+        ..fitting(channel, asked, config.seed.wrapping_add(n as u64))
+    };
+    let faults = Faults {
+        sound: encoder.clone(),
+        spoilt_until: None,
+    };
+    let mut link = SsiLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
+    let turns = motion(n, channel.position_bits, config.speed);
+    link.set_motion(turns.clone());
+    if is_open {
+        link.unplug();
+    }
+    Plugged {
+        encoder: Box::new(link),
+        motion: turns,
+        faults: Box::new(faults),
+    }
+}
+
+/// One without a fault at channel `n`, for a run that is recorded: 10 m away.
+pub(crate) fn sound(channel: &ChannelConfig, asked: &SsiSpec, n: usize) -> SsiLink {
+    let mut link = SsiLink::new(fitting(channel, asked, n as u64 + 1), 50 * NS);
+    link.set_motion(motion(n, channel.position_bits, 1.0));
+    link
+}
+
+/// What is wrong with one.
+struct Faults {
+    /// As it was.
+    sound: EncoderConfig,
+    /// Its frames are spoilt until it has sent so many.
+    spoilt_until: Option<u64>,
+}
+
+fn link(encoder: &mut dyn OtherEncoder) -> &mut SsiLink {
+    let link = encoder.as_any_mut().downcast_mut();
+    link.expect("the encoder that these faults were made for")
+}
+
+impl OtherFaults for Faults {
+    fn known(&self) -> &'static [&'static str] {
+        &FAULTS
+    }
+
+    fn make(&mut self, encoder: &mut dyn OtherEncoder, deed: Deed) -> Option<()> {
+        let link = link(encoder);
+        let until = |frames| Some(link.encoder().frames() + frames);
+        let copy = usize::from(self.sound.repeats);
+        let (ends, defect) = match deed {
+            Deed::Spoil(frames, Wanted::CrcXor(_)) => {
+                (until(frames), Defect::Flip { copy, bit: 0 })
+            }
+            Deed::Spoil(frames, Wanted::NoStartBit) => (until(frames), Defect::Silent),
+            Deed::Line(FaultKind::StuckLow) => (None, Defect::StuckLow),
+            _ => return self.change(link, deed),
+        };
+        link.encoder_mut().config.defect = defect;
+        self.spoilt_until = ends;
+        Some(())
+    }
+
+    fn mend(&mut self, encoder: &mut dyn OtherEncoder) -> bool {
+        let Some(frames) = self.spoilt_until else {
+            return false;
+        };
+        let encoder = link(encoder).encoder_mut();
+        let goes_on = encoder.frames() < frames;
+        if !goes_on {
+            encoder.config.defect = Defect::None;
+            self.spoilt_until = None;
+        }
+        goes_on
+    }
+}
+
+impl Faults {
+    /// What lasts until something else is asked for.
+    fn change(&mut self, link: &mut SsiLink, deed: Deed) -> Option<()> {
+        match deed {
+            Deed::Supply(true) => link.plug(),
+            Deed::Supply(false) | Deed::Line(FaultKind::Open) => link.unplug(),
+            Deed::Slow(by) => link.encoder_mut().config.tm = self.sound.tm + by,
+            Deed::Jitter(most) => link.encoder_mut().config.jitter = most,
+            Deed::Heal => {
+                link.plug();
+                link.encoder_mut().config = self.sound.clone();
+                self.spoilt_until = None;
+            }
+            _ => return None,
+        }
+        Some(())
+    }
+}

@@ -1,0 +1,78 @@
+//! The keys of a `[[channel]]` that speaks SSI.
+
+use super::keys::{BINARY, CODE, GRAY, TWICE};
+use crate::config::keys::{
+    CABLE, CLOCK_HZ, FILTER_NS, POSITION_BITS, PROTOCOL, RECOVERY_MAX, RECOVERY_MIN, TST_NS,
+};
+use crate::config::reader::{At, Table};
+use crate::form::key::Key;
+use crate::other_protocol::Wanted;
+use endat_hdl::config::{ChannelConfig, ChannelSpec};
+use endat_hdl::protocols::{Spoken, SsiSpec};
+
+/// What is asked of a channel; none if something could not be read.
+pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted> {
+    let mut lines = vec![(PROTOCOL.name, table.line)];
+    let position = table.required_integer(&POSITION_BITS, &POSITION_BITS.limits(system_hz));
+    let clock = table.required_integer(&CLOCK_HZ, &CLOCK_HZ.limits(system_hz));
+    for (key, at) in [(&POSITION_BITS, &position), (&CLOCK_HZ, &clock)] {
+        lines.push((key.name, at.as_ref().map_or(table.line, |at| at.line)));
+    }
+    let mut number = |key: &'static Key, usual: u64| {
+        let at = table.integer(key, &key.limits(system_hz));
+        let is_read = at.is_some() || !table.has(key.name);
+        let at = at.unwrap_or(At {
+            value: usual,
+            line: table.line,
+        });
+        lines.push((key.name, at.line));
+        is_read.then_some(at.value)
+    };
+    let tst_ns = number(&TST_NS, 0);
+    let filter_ns = number(&FILTER_NS, FILTER_NS.usual_number());
+    let recovery_min_ns = number(&RECOVERY_MIN, RECOVERY_MIN.usual_number());
+    let recovery_max_ns = number(&RECOVERY_MAX, RECOVERY_MAX.usual_number());
+    let cable_m = number(&CABLE, CABLE.usual_number());
+    let code = table.string(&CODE);
+    let gray = match code.as_ref().map(|code| code.value.as_str()) {
+        None | Some(BINARY) => Some(false),
+        Some(GRAY) => Some(true),
+        Some(_) => None,
+    };
+    if let (Some(code), None) = (&code, gray) {
+        let shown = format!("{:?}", code.value);
+        let text = format!("unknown code; use \"{BINARY}\" or \"{GRAY}\"");
+        table.complain(code.line, CODE.name, &shown, &text);
+    }
+    let twice = table.boolean(&TWICE);
+    let spoken = Spoken::Ssi(SsiSpec {
+        gray: gray?,
+        twice: twice.map_or(false, |at| at.value),
+    });
+    Some(Wanted {
+        spec: ChannelSpec {
+            clock_hz: clock?.value,
+            position_bits: position?.value,
+            tst_ns: tst_ns?,
+            filter_ns: filter_ns?,
+            recovery_min_ns: recovery_min_ns?,
+            recovery_max_ns: recovery_max_ns?,
+            cable_m: cable_m?,
+            ..ChannelSpec::speaking(spoken)
+        },
+        lines,
+    })
+}
+
+/// What decides what a channel does, for the hash of a card.
+pub fn canonical(asked: &SsiSpec, channel: &ChannelConfig) -> String {
+    let SsiSpec { gray, twice } = asked;
+    format!(
+        "ssi period_cycles {} first_low {} bits {} filter_cycles {} recovery {} gray {gray} twice {twice}",
+        channel.period_cycles,
+        channel.first_low_extra_cycles,
+        channel.position_bits,
+        channel.filter_cycles,
+        channel.recovery_limit_cycles,
+    )
+}

@@ -1,0 +1,32 @@
+//! What is asked of a channel that speaks SSI.
+
+use endat_regs::protocols::ssi::frame;
+use std::ops::RangeInclusive;
+
+/// What is asked of such a channel besides clock, width, filter and recovery time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SsiSpec {
+    /// The position is in Gray code.
+    pub gray: bool,
+    /// Each position comes twice, and the two are compared.
+    pub twice: bool,
+}
+
+impl SsiSpec {
+    /// The bits of `config.frame.command`.
+    pub const fn frame(&self) -> u64 {
+        1 << frame::CLOCKED
+            | (self.gray as u64) << frame::GRAY
+            | (self.twice as u64) << frame::TWICE
+    }
+
+    /// What a field is in it after reset, if that is something else than in EnDat.
+    pub(crate) fn start(&self, register: &str, field: &str) -> Option<u64> {
+        (register == "frame" && field == "command").then(|| self.frame())
+    }
+}
+
+/// Range of a key that only SSI has: none is a number.
+pub(crate) fn range(_: &str) -> Option<RangeInclusive<u64>> {
+    None
+}

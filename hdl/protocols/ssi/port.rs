@@ -1,0 +1,306 @@
+//! SSI port: one encoder as a channel of a card, with the result registers that EnDat channels have.
+//!
+//! ```text
+//! state    REST| LOW |HIGH | LOW |HIGH |  ...  | LOW |   LAST   |  RECOVERY   |REST
+//! clk   ~~~~~~~\_____/~~~~~\_____/~~~~~~  ...  \_____/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
+//! data  ~~~~~~~~~~~~~~< msb      >< ...     >< lsb   >\_________________/~~~~~~~~~~
+//!                                ^ taken             ^ taken    ^ LOW? result
+//! ```
+//!
+//! With `frame` bit 1 the clock goes on: a LOW bit, and the same position once more.
+
+use super::cause;
+use crate::endat::features::Features;
+use crate::input_filter::InputFilter;
+use crate::lowest_cause::LowestCause;
+use crate::ports::FrameResultOut;
+use crate::snapshot::Snapshot;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+pub use endat_regs::protocols::ssi::frame;
+
+/// Port of one SSI encoder.
+#[derive(LogicBlock, Block)]
+#[properties("../../properties/ssi_port.sv")]
+pub struct SsiPort {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Free-running time in system clock cycles.
+    pub timestamp: Signal<In, Bits<32>>,
+    /// One-cycle strobe: take a position.
+    pub trigger: Signal<In, Bit>,
+    /// Line from the transceiver, asynchronous, HIGH at rest.
+    pub data_i: Signal<In, Bit>,
+    /// Clock period, in system clock cycles, 4 to 2047; fewer count as 4 more. Constant while `busy`, as all settings.
+    pub period_cycles: Signal<In, Bits<11>>,
+    /// How much longer than half a period the first low phase is.
+    pub first_low_extra_cycles: Signal<In, Bits<11>>,
+    /// Kind of frame, see [`frame`]: bit 0 Gray code, bit 1 each position twice, bit 2 a frame may go out.
+    pub frame: Signal<In, Bits<6>>,
+    /// Position width, 1 to 48 bits.
+    pub position_bits: Signal<In, Bits<6>>,
+    /// Pulses of at most this many system clock cycles are ignored.
+    pub filter_cycles: Signal<In, Bits<4>>,
+    /// DATA is HIGH again at the latest after so many system clock cycles (tm).
+    pub recovery_limit_cycles: Signal<In, Bits<13>>,
+    /// Clock to the transceiver, from a register, HIGH at rest.
+    pub ssi_clk: Signal<Out, Bit>,
+    /// A trigger would not be taken.
+    pub busy: Signal<Out, Bit>,
+    /// Strobe: a frame has ended.
+    pub over: Signal<Out, Bit>,
+    /// Result of a trigger.
+    #[bundle]
+    pub result: FrameResultOut,
+    filter: InputFilter,
+    #[start]
+    primary: LowestCause,
+    snapshot: Snapshot,
+    state: Reg<Bits<3>>,
+    #[start(true)]
+    clk: Reg<Bit>,
+    timer: Reg<Bits<13>>,
+    left: Reg<Bits<6>>,
+    left_too: Reg<Bits<6>>,
+    torn: Reg<Bit>,
+    latches: Reg<Bit>,
+    between: Reg<Bit>,
+    second: Reg<Bit>,
+    before: Reg<Bit>,
+    word: Reg<Bits<48>>,
+    again: Reg<Bits<48>>,
+    sum: Reg<Bit>,
+    not_low: Reg<Bit>,
+    lost: Reg<Bit>,
+    ended: Reg<Bit>,
+    fallen: Reg<Bit>,
+    unknown: Reg<Bit>,
+    not_high: Reg<Bit>,
+    period: Signal<Local, Bits<11>>,
+    low_cycles: Signal<Local, Bits<11>>,
+    high_cycles: Signal<Local, Bits<11>>,
+    is_due: Signal<Local, Bit>,
+    is_last: Signal<Local, Bit>,
+    takes_bit: Signal<Local, Bit>,
+    value: Signal<Local, Bit>,
+    is_other: Signal<Local, Bit>,
+    is_torn: Signal<Local, Bit>,
+    is_upset: Signal<Local, Bit>,
+    good: Signal<Local, Bit>,
+    raised: Signal<Local, Bits<16>>,
+    at_rest: Constant<Bits<3>>,
+    at_low: Constant<Bits<3>>,
+    at_high: Constant<Bits<3>>,
+    at_last: Constant<Bits<3>>,
+    at_recovery: Constant<Bits<3>>,
+}
+
+impl Default for SsiPort {
+    fn default() -> Self {
+        Self::from_parts(SsiPortParts {
+            filter: InputFilter::new(Features::NONE),
+            snapshot: Snapshot::new(cause::UPSET, cause::flag(cause::UPSET)),
+            at_rest: Constant::new(0.into()),
+            at_low: Constant::new(1.into()),
+            at_high: Constant::new(2.into()),
+            at_last: Constant::new(3.into()),
+            at_recovery: Constant::new(4.into()),
+        })
+    }
+}
+
+#[kernel]
+impl Logic for SsiPort {
+    fn update(&mut self) {
+        clock!(self, clock, filter, snapshot);
+        self.filter.reset.next = self.reset.val();
+        self.snapshot.reset.next = self.reset.val();
+        connect!(self.filter <= self; pin = data_i, filter_cycles);
+        self.filter.filter_half.next = false;
+        self.filter.majority.next = false;
+        self.filter.both_edges.next = false;
+        self.time_clock();
+        self.clock_frame();
+        self.take_bits();
+        self.judge();
+        self.show_result();
+    }
+
+    /// Lengths of both halves of a period, and the end of the one under way.
+    fn time_clock(&mut self) {
+        // A shorter one has no halves.
+        self.period.next = self.period_cycles.val();
+        if !self.period_cycles.val().get_bits::<9>(2).any() {
+            self.period.next = self.period_cycles.val() | 4;
+        }
+        self.low_cycles.next = self.period.val() >> 1;
+        self.high_cycles.next = self.period.val() - self.low_cycles.val();
+        self.is_due.next = !self.timer.q.val().any();
+        if self.timer.q.val().any() {
+            self.timer.d.next = self.timer.q.val() - 1;
+        }
+    }
+
+    /// The clock, and whose turn it is.
+    fn clock_frame(&mut self) {
+        self.ended.d.next = false;
+        // This rising edge takes the last bit of the frame.
+        self.is_last.next = !self.latches.q.val()
+            & !self.between.q.val()
+            & !self.left.q.val().get_bits::<5>(1).any()
+            & (self.second.q.val() | !self.frame.val().get_bit(1));
+        if self.state.q.val() == self.at_rest.val() {
+            if self.trigger.val() {
+                self.unknown.d.next = !self.frame.val().get_bit(2);
+                self.not_high.d.next = !self.filter.level.val();
+                self.not_low.d.next = false;
+                self.latches.d.next = true;
+                self.between.d.next = false;
+                self.second.d.next = false;
+                self.before.d.next = false;
+                self.sum.d.next = false;
+                self.left.d.next = self.position_bits.val();
+                self.left_too.d.next = self.position_bits.val();
+                if self.frame.val().get_bit(2) & self.filter.level.val() {
+                    self.clk.d.next = false;
+                    self.state.d.next = self.at_low.val();
+                    self.timer.d.next = bit_cast::<13, 11>(self.low_cycles.val())
+                        + bit_cast::<13, 11>(self.first_low_extra_cycles.val())
+                        - 1;
+                } else {
+                    self.ended.d.next = true;
+                }
+            }
+        } else if self.is_due.val() {
+            if self.state.q.val() == self.at_low.val() {
+                self.clk.d.next = true;
+                self.state.d.next = self.at_high.val();
+                self.timer.d.next = bit_cast::<13, 11>(self.high_cycles.val()) - 1;
+                if self.is_last.val() {
+                    self.state.d.next = self.at_last.val();
+                    self.timer.d.next = bit_cast::<13, 11>(self.period.val()) - 1;
+                }
+            } else if self.state.q.val() == self.at_high.val() {
+                self.clk.d.next = false;
+                self.state.d.next = self.at_low.val();
+                self.timer.d.next = bit_cast::<13, 11>(self.low_cycles.val()) - 1;
+            } else if self.state.q.val() == self.at_last.val() {
+                self.state.d.next = self.at_recovery.val();
+                self.timer.d.next = self.recovery_limit_cycles.val();
+                self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
+                self.ended.d.next = true;
+            } else {
+                // Whatever the line does: a trigger looks at it again.
+                self.state.d.next = self.at_rest.val();
+            }
+        }
+        // The encoder is ready again.
+        if (self.state.q.val() == self.at_recovery.val()) & self.filter.level.val() {
+            self.state.d.next = self.at_rest.val();
+        }
+    }
+
+    /// What the line says at each rising edge of the clock but the first, most significant bit first.
+    fn take_bits(&mut self) {
+        self.takes_bit.next = (self.state.q.val() == self.at_low.val())
+            & self.is_due.val()
+            & !self.latches.q.val()
+            & !self.between.q.val();
+        self.value.next =
+            self.filter.level.val() ^ (self.before.q.val() & self.frame.val().get_bit(0));
+        if (self.state.q.val() == self.at_low.val()) & self.is_due.val() {
+            self.latches.d.next = false;
+            self.between.d.next = false;
+            if self.between.q.val() {
+                self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
+            }
+        }
+        if self.takes_bit.val() {
+            self.before.d.next = self.value.val();
+            self.left.d.next = self.left.q.val() - 1;
+            self.left_too.d.next = self.left_too.q.val() - 1;
+            if self.second.q.val() {
+                self.again.d.next =
+                    (self.again.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
+            } else {
+                self.word.d.next =
+                    (self.word.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
+                self.sum.d.next = self.sum.q.val() ^ self.value.val();
+            }
+            // The second copy begins as the first one.
+            if !self.left.q.val().get_bits::<5>(1).any() & !self.second.q.val() {
+                self.second.d.next = true;
+                self.between.d.next = true;
+                self.before.d.next = false;
+                self.left.d.next = self.position_bits.val();
+                self.left_too.d.next = self.position_bits.val();
+            }
+        }
+        if (self.state.q.val() == self.at_rest.val()) & self.trigger.val() {
+            self.word.d.next = 0.into();
+            self.again.d.next = 0.into();
+        }
+    }
+
+    /// What the frame is worth: a bit for each cause, in the order of their codes.
+    fn judge(&mut self) {
+        self.busy.next = self.state.q.val() != self.at_rest.val();
+        // A trigger that was not taken is told by the result of the frame under way, or of the next one.
+        if self.ended.q.val() {
+            self.lost.d.next = false;
+        }
+        if self.trigger.val() & (self.state.q.val() != self.at_rest.val()) {
+            self.lost.d.next = true;
+        }
+        self.is_other.next =
+            self.frame.val().get_bit(1) & (self.word.q.val() != self.again.q.val());
+        // The bits are counted twice: a copy that is short by one fits the next one that begins a bit too soon.
+        self.is_torn.next = self.torn.q.val() | (self.left.q.val() != self.left_too.q.val());
+        self.torn.d.next = self.is_torn.val() & (self.state.q.val() != self.at_rest.val());
+        // What is stored is what came.
+        self.is_upset.next = self.is_torn.val() | (self.word.q.val().xor() ^ self.sum.q.val());
+        self.raised.next = bit_cast::<16, 1>(self.unknown.q.val().into())
+            | (bit_cast::<16, 1>(self.not_high.q.val().into()) << 1)
+            | (bit_cast::<16, 1>(self.not_low.q.val().into()) << 2)
+            | (bit_cast::<16, 1>(self.is_other.val().into()) << 3)
+            | (bit_cast::<16, 1>(self.is_upset.val().into()) << 4)
+            | (bit_cast::<16, 1>(self.lost.q.val().into()) << 5);
+        self.primary.flags.next = self.raised.val();
+        self.good.next = !self.raised.val().get_bits::<5>(0).any();
+    }
+
+    /// The last good position, and why there is no newer one.
+    fn show_result(&mut self) {
+        connect!(self.snapshot <= self; tick_us, timestamp);
+        self.fallen.d.next =
+            (self.fallen.q.val() | !self.clk.q.val()) & (self.state.q.val() != self.at_rest.val());
+        self.snapshot.first_fall.next = !self.clk.q.val() & !self.fallen.q.val();
+        self.snapshot.latched.next = false;
+        self.snapshot.delay_cycles.next = 0.into();
+        self.snapshot.told.publish.next = self.ended.q.val();
+        self.snapshot.told.good.next = self.ended.q.val() & self.good.val();
+        // All that a frame shows is seen before its result.
+        self.snapshot.told.late_fault.next = false;
+        self.snapshot.told.withdraw.next = false;
+        self.snapshot.told.confirm.next = true;
+        self.snapshot.width_in.next = 0.into();
+        self.snapshot.has_f2_in.next = false;
+        self.snapshot.position_in.next = self.word.q.val();
+        self.snapshot.crc_received_in.next = 0.into();
+        self.snapshot.crc_computed_in.next = 0.into();
+        self.snapshot.told.cause_told.next = self.primary.cause.val();
+        self.snapshot.told.flags_told.next = bit_cast::<20, 16>(self.raised.val());
+        self.over.next = self.ended.q.val();
+        self.ssi_clk.next = self.clk.q.val();
+        FrameResultOut::link(&mut self.result, &mut self.snapshot.result);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,39 @@
+//! SSI protocol facts. Plain Rust, no hardware.
+//!
+//! Ref: HEIDENHAIN, PWM 20 operating instructions, 2014, interface description (order of a frame, same value again within the recovery time);
+//! POSITAL, "SSI", technology page (n + 1 clocks, LOW behind the last bit and between copies); Kuebler, "Synchronous Serial Interface" (monoflop
+//! time up to 40 us); TR-Electronic, COK-65 interface description (delay tV from clock to bit, pause of twice the monoflop time).
+
+use crate::endat::timing::cycles_to_ns;
+
+/// Longest time from a rising clock edge to its bit, at the encoder, in ns. Data sheets give 100 ns and more; no source has an upper limit for
+/// all encoders, this is what a channel leaves them.
+pub const BIT_DELAY_NS: u64 = 400;
+/// System clock cycles from a pin to the level that is taken, without the filter: synchroniser, level, and the clock's own register.
+pub const LATENCY_CYCLES: u64 = 6;
+/// Shortest period, in system clock cycles.
+pub const PERIOD_CYCLES_MIN: u64 = 4;
+
+/// How much of a period is left for cable and encoder, in ns.
+pub const fn bit_delay_most_ns(period: u64, filter_cycles: u64, system_hz: u64) -> u64 {
+    cycles_to_ns(
+        period.saturating_sub(LATENCY_CYCLES + filter_cycles),
+        system_hz,
+    )
+}
+
+/// Falling edges of the clock in a frame.
+pub const fn clocks(position_bits: u64, twice: bool) -> u64 {
+    (position_bits + 1) * (1 + twice as u64)
+}
+
+/// Bits in Gray code as a number.
+pub const fn from_gray(gray: u64) -> u64 {
+    let mut value = gray;
+    let mut shift = 1;
+    while shift < 64 {
+        value ^= value >> shift;
+        shift *= 2;
+    }
+    value
+}

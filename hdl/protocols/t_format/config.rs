@@ -1,0 +1,110 @@
+//! Requests for T-format channels into cycles, and the length of an exchange.
+
+use super::asked::{is_rate, is_triggered, TFormatSpec};
+use super::protocol::{BIT_HZ, CARD_BIT_CYCLES_MIN, FAST_BIT_HZ, RATE_TOLERANCE_PPM, REST_US};
+use crate::config::{
+    check_filter, limits, microseconds, ChannelConfig, ChannelSpec, Check, TooLong,
+};
+use crate::endat::timing::{cycles_at_least, deviation_ppm, period_cycles};
+use crate::protocols::Spoken;
+
+/// Position bits of a T-format channel: multi-turn in bits 47..24, single-turn in 23..0.
+const POSITION_BITS: u32 = 48;
+
+impl TFormatSpec {
+    /// The longest exchange that is within the pauses: half a bit, request, reply, and the rest before the next one.
+    pub(crate) fn cycle_max_cycles(&self, channel: &ChannelConfig, system_hz: u64) -> u64 {
+        let bit_cycles = channel.period_cycles;
+        let pauses = self.request.reply().len() as u64 - 1;
+        let gaps_us = self.reply_gap_us + self.field_gap_us * pauses;
+        // A microsecond for all that is synchronised.
+        let waits_ns = 1_000 * (gaps_us + REST_US + 1);
+        bit_cycles * (self.request.wire_bits() + 1) + cycles_at_least(waits_ns, system_hz)
+    }
+}
+
+impl TFormatSpec {
+    /// Converts and checks a channel.
+    pub(crate) fn resolve(
+        &self,
+        check: &mut Check<'_>,
+        request: &ChannelSpec,
+        system_hz: u64,
+    ) -> Option<ChannelConfig> {
+        let mut within = |key, value| check.within(key, value, &limits(key, Some(system_hz)));
+        let gaps_good = [
+            within("reply_gap_us", self.reply_gap_us),
+            within("field_gap_us", self.field_gap_us),
+        ];
+        if !is_rate(self.bit_hz) {
+            check.fail(
+                "bit_hz",
+                self.bit_hz,
+                format!("is no rate of T-format encoders; use {BIT_HZ} or {FAST_BIT_HZ}"),
+            );
+            return None;
+        }
+        if !is_triggered(self.request) {
+            check.fail(
+                "request",
+                u64::from(self.request.id()),
+                "goes to the EEPROM, which a trigger must not; use 3, and the word t_format<n>.send for the EEPROM".into(),
+            );
+        }
+        let bit_cycles = check_rate(check, self.bit_hz, system_hz)?;
+        // Less than half a bit.
+        let filter_cycles =
+            check_filter(check, request, (bit_cycles - 1) / 2, 1, system_hz, "a bit");
+        (gaps_good == [true, true]).then(|| ChannelConfig {
+            period_cycles: bit_cycles,
+            first_low_extra_cycles: 0,
+            command: request.command,
+            position_bits: POSITION_BITS,
+            filter_cycles,
+            filter_half: false,
+            start_window_cycles: 0,
+            start_timeout_us: self.reply_gap_us,
+            recovery_limit_cycles: 0,
+            ready_low_cycles: 0,
+            abort_us: 0,
+            spoken: Spoken::TFormat(*self),
+            spec: request.clone(),
+        })
+    }
+
+    /// Why a trigger would come before the channel is ready, and the remedy.
+    pub(crate) fn too_long(&self, index: usize, _: &ChannelConfig, times: TooLong) -> String {
+        format!(
+            "an exchange of T-format channel {index} takes up to {} us with its pauses, so at most {} Hz; lower it, or lower reply_gap_us = {} and field_gap_us = {}, or ask for less with request = 0",
+            microseconds(times.cycles, times.system_hz),
+            times.highest_hz(),
+            self.reply_gap_us,
+            self.field_gap_us
+        )
+    }
+}
+
+/// The cycles of a bit, if the rate can be made well enough.
+fn check_rate(check: &mut Check<'_>, bit_hz: u64, system_hz: u64) -> Option<u64> {
+    let bit_cycles = period_cycles(bit_hz, system_hz);
+    if bit_cycles < CARD_BIT_CYCLES_MIN {
+        let slowest_hz = bit_hz * CARD_BIT_CYCLES_MIN;
+        check.fail(
+            "bit_hz",
+            bit_hz,
+            format!("has {bit_cycles} cycles of clock.system_hz = {system_hz} in a bit, {CARD_BIT_CYCLES_MIN} are needed; use a system clock of at least {slowest_hz} Hz"),
+        );
+        return None;
+    }
+    let actual_hz = system_hz as f64 / bit_cycles as f64;
+    let ppm = deviation_ppm(actual_hz, bit_hz as f64);
+    if ppm.abs() > RATE_TOLERANCE_PPM as f64 {
+        check.fail(
+            "bit_hz",
+            bit_hz,
+            format!("would become {actual_hz:.0} bit/s ({ppm:+.0} ppm), more than the allowed {RATE_TOLERANCE_PPM} ppm; use a multiple of {bit_hz} Hz for clock.system_hz, for example {}", bit_hz * bit_cycles),
+        );
+        return None;
+    }
+    Some(bit_cycles)
+}

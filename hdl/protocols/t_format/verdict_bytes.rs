@@ -1,0 +1,53 @@
+//! Verdict bytes: what is told about a reply, as the bytes that the processor reads.
+
+use crate::lowest_cause::LowestCause;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Control data, communication alarm, and cause with valid positions.
+#[derive(LogicBlock, Block)]
+pub struct VerdictBytes {
+    /// The reply is good.
+    pub good: Signal<In, Bit>,
+    /// Raw flags, see [`super::cause`].
+    pub flags: Signal<In, Bits<16>>,
+    /// ID that the reply repeats.
+    pub reply_id: Signal<In, Bits<4>>,
+    /// There is a single-turn (bit 0) and a multi-turn position (bit 1).
+    pub valid: Signal<In, Bits<2>>,
+    /// Low byte of address 1.
+    pub control: Signal<Out, Bits<8>>,
+    /// High byte of address 6.
+    pub communication: Signal<Out, Bits<8>>,
+    /// High byte of address 7, without busy.
+    pub told: Signal<Out, Bits<8>>,
+    #[start]
+    primary: LowestCause,
+    complains: Signal<Local, Bit>,
+    repeats: Signal<Local, Bit>,
+    alarms: Signal<Local, Bits<8>>,
+}
+
+#[kernel]
+impl Logic for VerdictBytes {
+    fn update(&mut self) {
+        self.primary.flags.next = self.flags.val();
+        self.complains.next = self.flags.val().get_bits::<2>(9).any();
+        self.alarms.next = bit_cast::<8, 2>(self.flags.val().get_bits::<2>(2))
+            | (bit_cast::<8, 1>(self.flags.val().get_bits::<1>(7)) << 2)
+            | (bit_cast::<8, 1>(self.flags.val().get_bits::<1>(6)) << 3)
+            | (bit_cast::<8, 2>(self.flags.val().get_bits::<2>(4)) << 4)
+            | (bit_cast::<8, 1>(self.flags.val().get_bits::<1>(8)) << 6)
+            | (bit_cast::<8, 1>(self.complains.val().into()) << 7);
+        self.communication.next = self.alarms.val();
+        // Any flag up to the echo says that no ID came, or another one.
+        self.repeats.next = !self.flags.val().get_bits::<6>(0).any();
+        self.control.next = bit_cast::<8, 4>(self.reply_id.val())
+            | (bit_cast::<8, 1>(self.repeats.val().into()) << 4)
+            | (bit_cast::<8, 1>(self.alarms.val().any().into()) << 5)
+            | (bit_cast::<8, 1>(self.good.val().into()) << 7);
+        self.told.next = bit_cast::<8, 4>(self.primary.cause.val().get_bits::<4>(0))
+            | (bit_cast::<8, 2>(self.valid.val()) << 4)
+            | (bit_cast::<8, 1>(self.flags.val().get_bits::<1>(15)) << 6);
+    }
+}

@@ -1,0 +1,38 @@
+//! Causes of SSI frames.
+//!
+//! The code of a flag is its number plus one, and the lowest flag is the primary cause: it explains those above it.
+
+crate::causes::cause::causes! {
+    NONE = 0, "none", "none";
+        same;
+    UNKNOWN_FRAME = 1, "unknown_frame", "unknown kind of frame";
+        "config<n>.frame.command of an SSI channel has no bit 2, or what a host wrote to the configuration was disturbed; nothing was clocked.",
+        "Write the configuration again: 4 to config<n>.frame.command, 5 for Gray code, 6 and 7 for the same twice.";
+    DATA_NOT_HIGH = 2, "data_not_high", "data not high before the frame";
+        "The DATA line of an SSI encoder was LOW when a frame was to begin: it still held the last position, has no supply, or the pair is swapped or shorted. Nothing was clocked.",
+        "Look at plug, supply and pair; trigger more slowly, and compare recovery_max_ns with the encoder's monoflop time.";
+    DATA_NOT_LOW_AFTER = 3, "data_not_low_after", "data not low after the last bit";
+        "DATA was HIGH behind the last bit, or between two copies: nothing is plugged in, the encoder has more bits than configured, or its bits come too late for this clock.",
+        "Look at plug and supply; compare position_bits with the data sheet; lower clock_hz.";
+    COPIES_DIFFER = 4, "copies_differ", "the two copies differ";
+        "The position came twice, and not the same: a bit was disturbed, or the encoder takes a new position for each copy.",
+        "Look at termination and shield; lower clock_hz; leave twice out if the encoder does not repeat.";
+    UPSET = 5, "upset", "stored data upset";
+        same;
+    TRIGGER_OVERRUN = 6, "trigger_overrun", "trigger overrun";
+        same;
+}
+
+/// Codes there are.
+pub const COUNT: u64 = ALL.len() as u64;
+
+/// Raw flag of a cause; 0 for none.
+pub const fn flag(cause: u64) -> u64 {
+    match cause {
+        NONE => 0,
+        _ => 1 << (cause - 1),
+    }
+}
+
+/// Flags with which the position is taken.
+pub const HARMLESS: u64 = flag(TRIGGER_OVERRUN);

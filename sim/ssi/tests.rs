@@ -1,0 +1,67 @@
+//! What the encoder notes, each with the receiver that does it.
+
+use super::*;
+use crate::US;
+
+/// Clocks an encoder; gives its bits, taken where the clock rises for the next.
+fn clocked(encoder: &mut Encoder, start: Time, clocks: usize, half: Time) -> Vec<bool> {
+    let mut bits = vec![];
+    for n in 0..clocks as u64 {
+        let fall = start + 2 * half * n;
+        encoder.clock(fall, false);
+        encoder.advance(fall + half - 1);
+        if n > 0 {
+            bits.push(encoder.data());
+        }
+        encoder.clock(fall + half, true);
+    }
+    encoder.advance(start + 2 * half * clocks as u64 + 100 * US);
+    bits
+}
+
+fn encoder(config: EncoderConfig) -> Encoder {
+    Encoder::new(EncoderConfig {
+        position_bits: 8,
+        position: 0b1011_0010,
+        ..config
+    })
+}
+
+#[test]
+fn a_position_comes_most_significant_bit_first_and_again() {
+    let is = [true, false, true, true, false, false, true, false];
+    let mut one = encoder(EncoderConfig::default());
+    assert_eq!(clocked(&mut one, 0, 9, US), is);
+    assert!(one.data(), "HIGH behind the recovery time");
+    let both = [&is[..], &[false], &is[..]].concat();
+    assert_eq!(clocked(&mut one, 500 * US, 18, US), both);
+    assert_eq!((one.frames(), one.violations()), (2, &[][..]));
+    let mut gray = encoder(EncoderConfig {
+        gray: true,
+        ..EncoderConfig::default()
+    });
+    assert_eq!(
+        clocked(&mut gray, 0, 9, US),
+        [true, true, true, false, true, false, true, true]
+    );
+}
+
+#[test]
+fn what_a_receiver_does_wrong_is_noted() {
+    let usual = EncoderConfig::default;
+    let noted = |config, clocks, half| {
+        let mut encoder = encoder(config);
+        clocked(&mut encoder, 0, clocks, half);
+        assert_eq!(encoder.frames(), u64::from(clocks % 9 == 0));
+        encoder.violations().to_vec()
+    };
+    assert_eq!(noted(usual(), 8, US), [Violation::Clocks(8)]);
+    assert_eq!(noted(usual(), 10, US), [Violation::Clocks(10)]);
+    assert_eq!(noted(usual(), 9, US / 10), [Violation::ShortPulse]);
+    let no_repeat = EncoderConfig {
+        repeats: false,
+        ..usual()
+    };
+    assert_eq!(noted(no_repeat, 18, US), [Violation::NoRepeat]);
+    assert_eq!(noted(usual(), 18, US), []);
+}

@@ -1,0 +1,156 @@
+//! The emitted bench of cards with SSI channels: it passes as it stands, and fails on every broken port.
+
+use crate::verilog::mutations::{mutation, Mutation};
+use crate::verilog::testbench::{bench_passes, check_mutations};
+use endat_gen::artifact::Artifact;
+use endat_gen::config::parse;
+
+const SSI: &str = "protocol = \"ssi\"\n";
+
+fn emitted(system_hz: u64, channels: &[&str], more: &str) -> Vec<Artifact> {
+    let channels: String = channels
+        .iter()
+        .map(|c| format!("[[channel]]\n{c}"))
+        .collect();
+    let text = format!(
+        "name = \"ssi\"\n[clock]\nsystem_hz = {system_hz}\n{channels}\
+         [trigger]\nsample_hz = 500\nsources = [\"pin\", \"register\"]\n[link]\nbaud = 2_000_000\nread_hz = 50\n{more}"
+    );
+    endat_gen::emit(&parse("ssi.toml", &text).unwrap()).unwrap()
+}
+
+const GRAY: &str =
+    "protocol = \"ssi\"\nposition_bits = 17\nclock_hz = 500_000\ncode = \"gray\"\ntwice = true\n";
+
+/// Widths, codes and clocks, alone and beside the other protocols.
+#[test]
+fn it_passes_on_cards() {
+    let one = format!("{SSI}position_bits = 1\nclock_hz = 400_000\ncable_m = 10\n");
+    let wide =
+        format!("{SSI}position_bits = 48\nclock_hz = 500_000\ntwice = true\ntst_ns = 3_000\n");
+    let endat = "position_bits = 25\nclock_hz = 2_000_000\ncommand = \"111000\"\n";
+    let t_format = "protocol = \"t_format\"\n";
+    bench_passes("ssi-alone", &emitted(32_000_000, &[&one, &wide], ""), &[]);
+    let three = emitted(50_000_000, &[GRAY, endat, t_format], "");
+    bench_passes("ssi-three-protocols", &three, &[]);
+    let served = emitted(
+        24_000_000,
+        &[endat, GRAY],
+        "[service]\nparts = [\"requests\"]\n[device]\ninitial_values = false\n[host]\nbus = \"uart\"\n",
+    );
+    bench_passes("ssi-beside-a-service", &served, &[]);
+}
+
+#[test]
+fn it_fails_on_every_broken_port() {
+    let narrow = format!("{SSI}position_bits = 7\nclock_hz = 1_000_000\ncable_m = 10\ncode = \"gray\"\ntwice = true\n");
+    check_mutations("ssi", &emitted(32_000_000, &[&narrow], ""), MUTATIONS);
+}
+
+const PORT: &str = "ssi_port";
+
+/// Ways to break the port.
+const MUTATIONS: &[Mutation] = &[
+    mutation(
+        "no last clock",
+        PORT,
+        "assign is_last = !latches & !between & !(|left[5:1]) & (second | !frame[1]);",
+        "assign is_last = !latches & !between & !(|left[5:2]) & (second | !frame[1]);",
+    ),
+    mutation(
+        "a copy only",
+        PORT,
+        "(second | !frame[1])",
+        "1'b1",
+    ),
+    mutation(
+        "Gray code as it came",
+        PORT,
+        "filter_level ^ (before & frame[0])",
+        "filter_level",
+    ),
+    mutation(
+        "the second copy begins in the code of the first",
+        PORT,
+        "before_next = 1'b0;\n                left_next = position_bits;",
+        "left_next = position_bits;",
+    ),
+    mutation(
+        "no LOW bit between copies looked at",
+        PORT,
+        "if (between) begin\n                not_low_next = not_low | filter_level;",
+        "if (between) begin\n                not_low_next = not_low;",
+    ),
+    mutation(
+        "end not looked at",
+        PORT,
+        "timer_next = recovery_limit_cycles;\n                not_low_next = not_low | filter_level;",
+        "timer_next = recovery_limit_cycles;\n                not_low_next = not_low;",
+    ),
+    mutation(
+        "copies not compared",
+        PORT,
+        "assign is_other = frame[1] & (word != again);",
+        "assign is_other = 1'b0;",
+    ),
+    mutation(
+        "the second copy shown",
+        PORT,
+        ".position_in(word),",
+        ".position_in(again),",
+    ),
+    mutation(
+        "clock begins on a line that is LOW",
+        PORT,
+        "if (frame[2] & filter_level) begin",
+        "if (frame[2]) begin",
+    ),
+    mutation(
+        "LOW line not told",
+        PORT,
+        "not_high_next = !filter_level;",
+        "not_high_next = 1'b0;",
+    ),
+    mutation(
+        "a trigger in the frame not told",
+        PORT,
+        "if (trigger & (state != AT_REST)) begin\n            lost_next = 1'b1;",
+        "if (trigger & (state != AT_REST)) begin\n            lost_next = 1'b0;",
+    ),
+    mutation(
+        "clock too fast",
+        PORT,
+        "assign low_cycles = {1'b0, period[10:1]};",
+        "assign low_cycles = {2'b0, period[10:2]};",
+    ),
+    mutation(
+        "least significant bit first",
+        PORT,
+        "word_next = {word[46:0], value};",
+        "word_next = {value, word[47:1]};",
+    ),
+    mutation(
+        "the last position stays in front",
+        PORT,
+        "word_next = 48'd0;",
+        "word_next = word;",
+    ),
+    mutation(
+        "a bit taken at the falling edge",
+        PORT,
+        "assign takes_bit = (state == AT_LOW) & is_due & !latches & !between;",
+        "assign takes_bit = (state == AT_HIGH) & is_due & !latches & !between;",
+    ),
+    mutation(
+        "a wrong position taken",
+        PORT,
+        "assign snapshot_good = ended & good;",
+        "assign snapshot_good = ended;",
+    ),
+    mutation(
+        "time stamp with each falling edge",
+        PORT,
+        "fallen <= (fallen | !clk) & (state != AT_REST);",
+        "fallen <= !clk;",
+    ),
+];

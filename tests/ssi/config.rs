@@ -1,0 +1,98 @@
+//! What a configuration may say of an SSI channel, with the line and the remedy of what it may not.
+
+use endat_gen::config::{load_preset, parse, preset};
+
+/// The preset with another line.
+fn changed(from: &str, to: &str) -> String {
+    let text = preset("ssi_two_channel").unwrap();
+    assert_eq!(text.matches(from).count(), 1, "{from}");
+    text.replacen(from, to, 1)
+}
+
+fn complaint(text: &str) -> String {
+    match parse("ssi.toml", text) {
+        Ok(_) => panic!("taken: {text}"),
+        Err(wrong) => wrong.iter().map(|one| format!("{one}\n")).collect(),
+    }
+}
+
+#[test]
+fn mistakes_are_told_with_line_and_remedy() {
+    for (from, to, is) in [
+        (
+            "clock_hz = 1_000_000 ",
+            "clock_hz = 2_000_000 ",
+            "ssi.toml:14: channel[0].clock_hz = 2000000: a bit takes up to 700 ns of a period from its clock edge (400 ns in the encoder, the rest in 30 m of cable), and the input 11 cycles; use at most 1234567 Hz, or a shorter cable_m",
+        ),
+        (
+            "clock_hz = 1_000_000 ",
+            "clock_hz = 125_000 ",
+            "ssi.toml:14: channel[0].clock_hz = 125000: the LOW behind the last bit is looked at 12000 ns after the last falling edge, recovery_min_ns = 10000 ends it sooner; use at least 150000 Hz, or raise recovery_min_ns to the encoder's",
+        ),
+        (
+            "code = \"gray\" ",
+            "code = \"grey\" ",
+            "ssi.toml:15: channel[0].code = \"grey\": unknown code; use \"binary\" or \"gray\"",
+        ),
+        (
+            "position_bits = 25 ",
+            "position_bits = 49 ",
+            "ssi.toml:13: channel[0].position_bits = 49: outside 1..48; choose a value in that range",
+        ),
+        (
+            "recovery_max_ns = 30_000 ",
+            "recovery_max_ns = 300_000 ",
+            "channel[0].recovery_max_ns = 300000: outside ",
+        ),
+        (
+            "twice = false ",
+            "command = \"111000\" ",
+            "is a key of EnDat, and this channel speaks SSI; remove it (SSI has code, twice, clock_hz, ",
+        ),
+        (
+            "twice = false ",
+            "request = 3 ",
+            "is a key of T-format, and this channel speaks SSI; remove it",
+        ),
+        (
+            "twice = false ",
+            "twice = 1 ",
+            "true or false, without quotes",
+        ),
+        (
+            "sample_hz = 5_000 ",
+            "sample_hz = 9_000 ",
+            "a frame of SSI channel 1 takes up to 129.32 us with the recovery time, so at most 7732 Hz; lower it, raise clock_hz = 500000, leave twice out, or shorten recovery_max_ns = 25000 if the data sheet allows it",
+        ),
+    ] {
+        let told = complaint(&changed(from, to));
+        assert!(told.contains(is), "{told}");
+        assert_eq!(told.lines().count(), 1, "{told}");
+    }
+    let missing = changed("clock_hz = 1_000_000 ", "# ");
+    assert!(complaint(&missing).contains("channel[0].clock_hz: is missing"));
+}
+
+/// Catches a number that the hash of a card leaves out, and one that it has without need.
+#[test]
+fn the_hash_is_of_what_decides() {
+    let is = load_preset("ssi_two_channel").unwrap().hash;
+    let hash = |text: &str| parse("ssi.toml", text).unwrap().hash;
+    for (from, to) in [
+        ("clock_hz = 1_000_000 ", "clock_hz = 800_000 "),
+        ("position_bits = 25 ", "position_bits = 24 "),
+        ("code = \"gray\" ", "code = \"binary\" "),
+        ("twice = false ", "twice = true "),
+        ("recovery_max_ns = 30_000 ", "recovery_max_ns = 31_000 "),
+        ("tst_ns = 2_000 ", "tst_ns = 3_000 "),
+    ] {
+        assert_ne!(hash(&changed(from, to)), is, "{to}");
+    }
+    for (from, to) in [
+        ("encoder = \"EQN 425, SSI\" ", "encoder = \"another\" "),
+        ("code = \"binary\" ", "#"),
+        ("clock_hz = 1_000_000 ", "clock_hz = 1_000_001 "),
+    ] {
+        assert_eq!(hash(&changed(from, to)), is, "{to}");
+    }
+}
