@@ -78,6 +78,7 @@ pub struct SsiPort {
     sum: Reg<Bit>,
     not_low: Reg<Bit>,
     lost: Reg<Bit>,
+    slow: Reg<Bit>,
     ended: Reg<Bit>,
     fallen: Reg<Bit>,
     unknown: Reg<Bit>,
@@ -198,6 +199,8 @@ impl Logic for SsiPort {
             } else {
                 // Whatever the line does: a trigger looks at it again.
                 self.state.d.next = self.at_rest.val();
+                self.slow.d.next =
+                    (self.state.q.val() == self.at_recovery.val()) & !self.filter.level.val();
             }
         }
         // The encoder is ready again.
@@ -254,6 +257,7 @@ impl Logic for SsiPort {
         // A trigger that was not taken is told by the result of the frame under way, or of the next one.
         if self.ended.q.val() {
             self.lost.d.next = false;
+            self.slow.d.next = false;
         }
         if self.trigger.val() & (self.state.q.val() != self.at_rest.val()) {
             self.lost.d.next = true;
@@ -270,7 +274,8 @@ impl Logic for SsiPort {
             | (bit_cast::<16, 1>(self.not_low.q.val().into()) << 2)
             | (bit_cast::<16, 1>(self.is_other.val().into()) << 3)
             | (bit_cast::<16, 1>(self.is_upset.val().into()) << 4)
-            | (bit_cast::<16, 1>(self.lost.q.val().into()) << 5);
+            | (bit_cast::<16, 1>(self.lost.q.val().into()) << 5)
+            | (bit_cast::<16, 1>(self.slow.q.val().into()) << 6);
         self.primary.flags.next = self.raised.val();
         self.good.next = !self.raised.val().get_bits::<5>(0).any();
     }

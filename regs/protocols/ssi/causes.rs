@@ -21,6 +21,9 @@ crate::causes::cause::causes! {
         same;
     TRIGGER_OVERRUN = 6, "trigger_overrun", "trigger overrun";
         same;
+    RECOVERY_TOO_LONG = 7, "recovery_too_long", "recovery time too long";
+        "Behind the frame before, DATA was still LOW after recovery_max_ns: a trigger at the highest rate would meet the encoder there. The position is good.",
+        "Raise recovery_max_ns to the encoder's monoflop time.";
 }
 
 /// Codes there are.
@@ -35,4 +38,4 @@ pub const fn flag(cause: u64) -> u64 {
 }
 
 /// Flags with which the position is taken.
-pub const HARMLESS: u64 = flag(TRIGGER_OVERRUN);
+pub const HARMLESS: u64 = flag(TRIGGER_OVERRUN) | flag(RECOVERY_TOO_LONG);

@@ -230,3 +230,22 @@ fn settings_out_of_their_range_end_in_a_result() {
         assert!(!rig.uut.busy.val());
     }
 }
+
+#[test]
+fn a_recovery_time_beyond_its_limit_is_told_by_the_next_result() {
+    let mut rig = Rig::new(4, 12);
+    rig.recovery = 260;
+    assert_eq!(rig.frame(bits(0xA53, 12)), cause::NONE);
+    assert_eq!(rig.frame(bits(0xA53, 12)), cause::NONE, "within its limit");
+    rig.recovery = 500;
+    assert_eq!(
+        rig.frame(bits(0xA53, 12)),
+        cause::NONE,
+        "its result is out before"
+    );
+    rig.recovery = 100;
+    assert_eq!(rig.frame(bits(0x5A3, 12)), cause::RECOVERY_TOO_LONG);
+    assert!(rig.is_fresh());
+    assert_eq!(rig.position(), 0x5A3);
+    assert_eq!(rig.frame(bits(0x5A4, 12)), cause::NONE);
+}
