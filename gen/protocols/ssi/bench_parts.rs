@@ -8,7 +8,7 @@ use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::endat::channel::TIMESTAMP_TO_FIRST_FALL_CYCLES;
 use endat_hdl::endat::timing::cycles_to_ns;
 use endat_hdl::protocols::ssi::cause;
-use endat_hdl::protocols::ssi::protocol::{bit_delay_most_ns, clocks};
+use endat_hdl::protocols::ssi::protocol::bit_delay_most_ns;
 use endat_hdl::protocols::SsiSpec;
 use endat_regs::Protocol;
 use minijinja::context;
@@ -65,8 +65,7 @@ pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<Bench
     let channels = card.channels.iter().enumerate();
     let speakers = channels.filter_map(|(n, c)| Some((n, c, c.spoken.ssi()?)));
     let frames = speakers.clone();
-    let frames =
-        frames.map(|(_, c, asked)| c.period_cycles * clocks(c.position_bits.into(), asked.twice));
+    let frames = frames.map(|(_, c, asked)| c.period_cycles * asked.clocks(c.position_bits));
     let shortest_cycles = frames.min().unwrap_or(0);
     let ports: Vec<Port> = speakers
         .map(|(n, c, asked)| Port::new(card, n, c, asked))

@@ -3,7 +3,7 @@
 use crate::explain::rate::{rate, us_of, Rate};
 use crate::other_protocol::OtherReport;
 use endat_hdl::config::{CardConfig, ChannelConfig};
-use endat_hdl::protocols::ssi::protocol::{bit_delay_most_ns, clocks};
+use endat_hdl::protocols::ssi::protocol::bit_delay_most_ns;
 use endat_hdl::protocols::SsiSpec;
 use endat_regs::Protocol;
 use endat_sim::decimal;
@@ -62,7 +62,7 @@ impl SsiReport {
             position_bits: config.position_bits,
             gray: asked.gray,
             twice: asked.twice,
-            clocks: clocks(config.position_bits.into(), asked.twice),
+            clocks: asked.clocks(config.position_bits),
             frame_us: us(cycles - config.recovery_limit_cycles),
             bit_delay_max_ns: bit_delay_most_ns(
                 config.period_cycles,

@@ -13,6 +13,11 @@ pub struct SsiSpec {
 }
 
 impl SsiSpec {
+    /// Falling edges of the clock in a frame.
+    pub const fn clocks(&self, position_bits: u32) -> u64 {
+        (position_bits as u64 + 1) * (1 + self.twice as u64)
+    }
+
     /// The bits of `config.frame.command`.
     pub const fn frame(&self) -> u64 {
         1 << frame::CLOCKED

@@ -1,7 +1,7 @@
 //! Requests for SSI channels into cycles, and the length of a frame.
 
 use super::asked::SsiSpec;
-use super::protocol::{bit_delay_most_ns, clocks, BIT_DELAY_NS, LATENCY_CYCLES, PERIOD_CYCLES_MIN};
+use super::protocol::{bit_delay_most_ns, BIT_DELAY_NS, LATENCY_CYCLES, PERIOD_CYCLES_MIN};
 use crate::config::{
     check_clock, check_filter, check_tst, limits, microseconds, ChannelConfig, ChannelSpec, Check,
     TooLong, DELAY_NS_PER_M, INPUT_LATENCY_CYCLES,
@@ -12,7 +12,7 @@ use crate::protocols::Spoken;
 impl SsiSpec {
     /// The longest frame, up to where the next one may begin.
     pub(crate) fn cycle_max_cycles(&self, channel: &ChannelConfig, _: u64) -> u64 {
-        let clocks = clocks(channel.position_bits.into(), self.twice);
+        let clocks = self.clocks(channel.position_bits);
         channel.first_low_extra_cycles
             + (clocks + 1) * channel.period_cycles
             + channel.recovery_limit_cycles

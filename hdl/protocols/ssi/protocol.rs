@@ -22,11 +22,6 @@ pub const fn bit_delay_most_ns(period: u64, filter_cycles: u64, system_hz: u64) 
     )
 }
 
-/// Falling edges of the clock in a frame.
-pub const fn clocks(position_bits: u64, twice: bool) -> u64 {
-    (position_bits + 1) * (1 + twice as u64)
-}
-
 /// Bits in Gray code as a number.
 pub const fn from_gray(gray: u64) -> u64 {
     let mut value = gray;
