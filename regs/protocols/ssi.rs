@@ -47,7 +47,11 @@ const FIELDS: &[OwnField] = &[
     own("flags", Values::Bits(&FLAGS), &[]),
     own("period_cycles", Values::Plain, &[(4, 2047)]),
     own("position_bits", Values::Plain, &[(1, 48)]),
-    own("command", Values::Bits(frame::ALL), &[(4, 7)]),
+    own(
+        "command",
+        Values::Bits(frame::ALL),
+        &[(4, 7), (12, 15), (28, 31)],
+    ),
     own("request_id", Values::Plain, &[]),
     own("start_timeout_us", Values::Plain, &[]),
 ];
@@ -62,10 +66,16 @@ pub mod frame {
     pub const TWICE: u32 = 1;
     /// A frame may go out: without it nothing does.
     pub const CLOCKED: u32 = 2;
+    /// Behind the position comes a parity bit, of its bits as they are sent.
+    pub const PARITY: u32 = 3;
+    /// With that: it is odd, otherwise even.
+    pub const ODD: u32 = 4;
     /// All of them.
     pub const ALL: &[Named] = &[
         named("gray", GRAY, "in Gray code"),
         named("twice", TWICE, "each position twice, compared"),
         named("clocked", CLOCKED, "a frame goes out; always 1"),
+        named("parity", PARITY, "a parity bit behind the position"),
+        named("odd", ODD, "which is odd"),
     ];
 }

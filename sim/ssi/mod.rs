@@ -29,6 +29,8 @@ pub struct EncoderConfig {
     pub position_bits: u32,
     /// It sends Gray code.
     pub gray: bool,
+    /// Behind the position comes a bit with which the ones are even, or odd if this is true.
+    pub parity: Option<bool>,
     /// It sends the same position again if the clock goes on within `tm`.
     pub repeats: bool,
     /// Recovery time: from the last falling edge until DATA is HIGH.
@@ -53,6 +55,7 @@ impl Default for EncoderConfig {
         Self {
             position_bits: 25,
             gray: false,
+            parity: None,
             repeats: true,
             tm: 20 * US,
             bit_delay: 150 * NS,
@@ -73,7 +76,9 @@ impl EncoderConfig {
             false => self.position,
         };
         let places = (0..self.position_bits).rev();
-        places.map(|n| code >> n & 1 == 1).collect()
+        let bits = places.map(|n| code >> n & 1 == 1);
+        let parity = self.parity.map(|odd| (code.count_ones() % 2 == 1) != odd);
+        bits.chain(parity).collect()
     }
 }
 

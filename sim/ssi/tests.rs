@@ -44,6 +44,16 @@ fn a_position_comes_most_significant_bit_first_and_again() {
         clocked(&mut gray, 0, 9, US),
         [true, true, true, false, true, false, true, true]
     );
+    for odd in [false, true] {
+        let mut checked = encoder(EncoderConfig {
+            parity: Some(odd),
+            ..EncoderConfig::default()
+        });
+        let bits = clocked(&mut checked, 0, 10, US);
+        assert_eq!(bits[..8], is);
+        let ones = bits.iter().filter(|bit| **bit).count();
+        assert_eq!(ones % 2 == 1, odd);
+    }
 }
 
 #[test]

@@ -20,12 +20,13 @@ fn emitted(system_hz: u64, channels: &[&str], more: &str) -> Vec<Artifact> {
 }
 
 const GRAY: &str =
-    "protocol = \"ssi\"\nposition_bits = 17\nclock_hz = 500_000\ncode = \"gray\"\ntwice = true\n";
+    "protocol = \"ssi\"\nposition_bits = 17\nclock_hz = 500_000\ncode = \"gray\"\nparity = \"odd\"\ntwice = true\n";
 
 /// Widths, codes and clocks, alone and beside the other protocols.
 #[test]
 fn it_passes_on_cards() {
-    let one = format!("{SSI}position_bits = 1\nclock_hz = 400_000\ncable_m = 10\n");
+    let one =
+        format!("{SSI}position_bits = 1\nclock_hz = 400_000\ncable_m = 10\nparity = \"even\"\n");
     let wide =
         format!("{SSI}position_bits = 48\nclock_hz = 500_000\ntwice = true\ntst_ns = 3_000\n");
     let endat = "position_bits = 25\nclock_hz = 2_000_000\ncommand = \"111000\"\n";
@@ -43,7 +44,7 @@ fn it_passes_on_cards() {
 
 #[test]
 fn it_fails_on_every_broken_port() {
-    let narrow = format!("{SSI}position_bits = 7\nclock_hz = 1_000_000\ncable_m = 10\ncode = \"gray\"\ntwice = true\n");
+    let narrow = format!("{SSI}position_bits = 7\nclock_hz = 1_000_000\ncable_m = 10\ncode = \"gray\"\nparity = \"even\"\ntwice = true\n");
     check_mutations("ssi", &emitted(32_000_000, &[&narrow], ""), MUTATIONS);
 }
 
@@ -54,8 +55,8 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "no last clock",
         PORT,
-        "assign is_last = !latches & !between & !(|left[5:1]) & (second | !frame[1]);",
-        "assign is_last = !latches & !between & !(|left[5:2]) & (second | !frame[1]);",
+        "assign ends_copy = !(|left[5:1]);",
+        "assign ends_copy = !(|left[5:2]);",
     ),
     mutation(
         "a copy only",
@@ -72,8 +73,20 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "the second copy begins in the code of the first",
         PORT,
-        "before_next = 1'b0;\n                left_next = position_bits;",
-        "left_next = position_bits;",
+        "before_next = 1'b0;\n                ones_next = 1'b0;\n                left_next = bits;",
+        "ones_next = 1'b0;\n                left_next = bits;",
+    ),
+    mutation(
+        "parity of both copies together",
+        PORT,
+        "before_next = 1'b0;\n                ones_next = 1'b0;\n                left_next = bits;",
+        "before_next = 1'b0;\n                left_next = bits;",
+    ),
+    mutation(
+        "parity not looked at",
+        PORT,
+        "not_even_next = not_even | (ones ^ filter_level ^ frame[4]);",
+        "not_even_next = not_even;",
     ),
     mutation(
         "no LOW bit between copies looked at",

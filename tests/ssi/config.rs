@@ -35,6 +35,11 @@ fn mistakes_are_told_with_line_and_remedy() {
             "ssi.toml:15: channel[0].code = \"grey\": unknown code; use \"binary\" or \"gray\"",
         ),
         (
+            "twice = false ",
+            "parity = \"mark\" ",
+            "ssi.toml:16: channel[0].parity = \"mark\": unknown parity; use \"none\" or \"even\" or \"odd\"",
+        ),
+        (
             "position_bits = 25 ",
             "position_bits = 49 ",
             "ssi.toml:13: channel[0].position_bits = 49: outside 1..48; choose a value in that range",
@@ -83,6 +88,7 @@ fn the_hash_is_of_what_decides() {
         ("position_bits = 25 ", "position_bits = 24 "),
         ("code = \"gray\" ", "code = \"binary\" "),
         ("twice = false ", "twice = true "),
+        ("twice = false ", "parity = \"odd\" "),
         ("recovery_max_ns = 30_000 ", "recovery_max_ns = 31_000 "),
         ("tst_ns = 2_000 ", "tst_ns = 3_000 "),
     ] {

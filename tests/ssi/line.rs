@@ -3,6 +3,7 @@
 use super::{bench, design, link};
 use crate::passed::once_for_this_core;
 use endat_hdl::config::{ChannelConfig, ChannelSpec};
+use endat_hdl::protocols::ssi::asked::Parity;
 use endat_hdl::protocols::ssi::cause;
 use endat_hdl::protocols::ssi::protocol::bit_delay_most_ns;
 use endat_hdl::protocols::{Spoken, SsiSpec};
@@ -52,6 +53,10 @@ fn run(config: &ChannelConfig, encoder: EncoderConfig, delay_ns: u64, frames: us
     let encoder = EncoderConfig {
         position_bits: config.position_bits,
         gray: config.spoken.ssi().unwrap().gray,
+        parity: match config.spoken.ssi().unwrap().parity {
+            Parity::None => None,
+            parity => Some(parity == Parity::Odd),
+        },
         ..encoder
     };
     let mut bench = bench(&design(), SYSTEM_HZ, encoder, delay_ns * NS);
@@ -83,10 +88,19 @@ fn every_position_comes_at_the_ends_of_the_tolerances() {
         (32, 600_000),
         (48, 630_000),
     ] {
-        for [gray, twice] in [[false, false], [true, false], [false, true], [true, true]] {
+        for (gray, twice, parity) in [
+            (false, false, Parity::None),
+            (true, false, Parity::Even),
+            (false, true, Parity::Odd),
+            (true, true, Parity::None),
+        ] {
             for (filter_ns, tst_ns) in [(0, 0), (100, 4_000)] {
                 let config = resolved(
-                    SsiSpec { gray, twice },
+                    SsiSpec {
+                        gray,
+                        twice,
+                        parity,
+                    },
                     ChannelSpec {
                         filter_ns,
                         tst_ns,
@@ -151,7 +165,11 @@ fn what_is_wrong_is_told_and_forgotten() {
     let mut rng = Rng::new(5);
     for twice in [false, true] {
         let config = resolved(
-            SsiSpec { gray: true, twice },
+            SsiSpec {
+                gray: true,
+                twice,
+                ..SsiSpec::default()
+            },
             ChannelSpec {
                 recovery_max_ns: 20_000,
                 ..spec(25, 500_000)

@@ -32,7 +32,7 @@ fn recorded() -> Stimulus {
     bench.run_for(5 * US);
     for round in 0..60 {
         if bench.get("busy") == 0 {
-            bench.set("command", [6, 7, 4, 6, 5, 7, 0][round % 7]);
+            bench.set("command", [6, 7, 4, 6, 14, 5, 7, 30, 0][round % 9]);
             bench.set(
                 "first_low_extra_cycles",
                 u128::from(rng.in_range(0, 1)) * 13,

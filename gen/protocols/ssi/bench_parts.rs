@@ -7,6 +7,7 @@ use crate::testbench::text::{real, whole};
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::endat::channel::TIMESTAMP_TO_FIRST_FALL_CYCLES;
 use endat_hdl::endat::timing::cycles_to_ns;
+use endat_hdl::protocols::ssi::asked::Parity;
 use endat_hdl::protocols::ssi::cause;
 use endat_hdl::protocols::ssi::protocol::bit_delay_most_ns;
 use endat_hdl::protocols::SsiSpec;
@@ -27,6 +28,9 @@ struct Port {
     position_bits: u32,
     gray: u8,
     twice: u8,
+    /// Of the position: bits behind it.
+    parity: u8,
+    odd: u8,
     bit_delay_ns: String,
     tm_ns: String,
     cable_ns: String,
@@ -48,6 +52,8 @@ impl Port {
             position_bits: channel.position_bits,
             gray: asked.gray.into(),
             twice: asked.twice.into(),
+            parity: asked.has_parity().into(),
+            odd: u8::from(asked.parity == Parity::Odd),
             bit_delay_ns: whole(BIT_DELAY_NS),
             tm_ns: whole(channel.spec.recovery_max_ns),
             cable_ns: real(cable_ns.floor() - 0.7),
@@ -79,6 +85,7 @@ pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<Bench
         count => card.channels.len(),
         data_not_high => cause::DATA_NOT_HIGH,
         data_not_low_after => cause::DATA_NOT_LOW_AFTER,
+        position_parity => cause::PARITY,
         copies_differ => cause::COPIES_DIFFER,
         trigger_overrun => cause::TRIGGER_OVERRUN,
         clock_pin_cycles => TIMESTAMP_TO_FIRST_FALL_CYCLES,

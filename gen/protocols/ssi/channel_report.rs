@@ -26,6 +26,8 @@ pub struct SsiReport {
     pub position_bits: u32,
     /// It comes in Gray code.
     pub gray: bool,
+    /// A bit behind it: none, even, odd.
+    pub parity: String,
     /// It comes twice, and both are compared.
     pub twice: bool,
     /// Falling edges of the clock in a frame.
@@ -61,6 +63,7 @@ impl SsiReport {
             period_cycles: config.period_cycles,
             position_bits: config.position_bits,
             gray: asked.gray,
+            parity: format!("{:?}", asked.parity).to_lowercase(),
             twice: asked.twice,
             clocks: asked.clocks(config.position_bits),
             frame_us: us(cycles - config.recovery_limit_cycles),
@@ -103,11 +106,16 @@ impl SsiReport {
         let code = if self.gray { " in Gray code" } else { "" };
         let twice = match self.twice {
             true => ", sent twice and compared",
-            false => ", nothing to check it by: see twice",
+            false if self.parity != "none" => "",
+            false => ", nothing to check it by: see twice and parity",
+        };
+        let parity = match self.parity.as_str() {
+            "none" => String::new(),
+            parity => format!(", {parity} parity"),
         };
         writeln!(
             f,
-            "  position         {} bits{code}{twice}; {} clocks, {} us to the result",
+            "  position         {} bits{code}{parity}{twice}; {} clocks, {} us to the result",
             self.position_bits,
             self.clocks,
             decimal(self.frame_us, 1)

@@ -4,6 +4,7 @@ use crate::other_protocol::{OtherFaults, Plugged};
 use crate::virtual_card::deed::Deed;
 use crate::virtual_card::settings::{VirtualConfig, NS_PER_M, SECOND};
 use endat_hdl::config::ChannelConfig;
+use endat_hdl::protocols::ssi::asked::Parity;
 use endat_hdl::protocols::SsiSpec;
 use endat_sim::bench::OtherEncoder;
 use endat_sim::encoder::Defect as Wanted;
@@ -34,6 +35,7 @@ fn fitting(channel: &ChannelConfig, asked: &SsiSpec, seed: u64) -> EncoderConfig
     EncoderConfig {
         position_bits: channel.position_bits,
         gray: asked.gray,
+        parity: asked.has_parity().then_some(asked.parity == Parity::Odd),
         repeats: asked.twice,
         // Well within what is allowed, and longer than any clock's pause.
         tm: tm * 3 / 4,

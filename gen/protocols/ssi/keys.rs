@@ -2,6 +2,7 @@
 
 use crate::config::forms::form;
 use crate::form::key::{keys, Choice, Key, Usual, CHANNELS};
+use endat_hdl::protocols::ssi::asked::Parity;
 use endat_regs::Protocol;
 
 const CHANNEL: &[&str] = &[CHANNELS];
@@ -18,11 +19,25 @@ fn codes() -> Vec<Choice> {
     ]
 }
 
+/// The words of `parity`.
+pub const PARITIES: [(&str, Parity, &str); 3] = [
+    ("none", Parity::None, "there is none"),
+    ("even", Parity::Even, "an even number of ones with it"),
+    ("odd", Parity::Odd, "an odd number"),
+];
+
+fn parities() -> Vec<Choice> {
+    let choice = |(word, _, means)| Choice::new(word, means);
+    PARITIES.map(choice).into()
+}
+
 keys! {
     /// All of them, in the order of the page.
     KEYS;
     CODE = Key::text(CHANNEL, "code", "code of the position, from the encoder's data sheet")
         .one_of(codes).of(SPEAKS_IT).usual(Usual::Word(BINARY));
+    PARITY = Key::text(CHANNEL, "parity", "bit behind the position, over its bits as they are sent")
+        .one_of(parities).of(SPEAKS_IT).usual(Usual::Word("none"));
     TWICE = Key::boolean(CHANNEL, "twice", "whether each position is asked for twice, and the two are compared: SSI has no check sum")
         .note("for an encoder that repeats while the clock goes on (multiple transmission); a frame is twice as long")
         .of(SPEAKS_IT).usual(Usual::Boolean(false));

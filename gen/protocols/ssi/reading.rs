@@ -1,6 +1,6 @@
 //! The keys of a `[[channel]]` that speaks SSI.
 
-use super::keys::{BINARY, CODE, GRAY, TWICE};
+use super::keys::{BINARY, CODE, GRAY, PARITIES, PARITY, TWICE};
 use crate::config::keys::{
     CABLE, CLOCK_HZ, FILTER_NS, POSITION_BITS, PROTOCOL, RECOVERY_MAX, RECOVERY_MIN, TST_NS,
 };
@@ -33,20 +33,16 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted> {
     let recovery_min_ns = number(&RECOVERY_MIN, RECOVERY_MIN.usual_number());
     let recovery_max_ns = number(&RECOVERY_MAX, RECOVERY_MAX.usual_number());
     let cable_m = number(&CABLE, CABLE.usual_number());
-    let code = table.string(&CODE);
-    let gray = match code.as_ref().map(|code| code.value.as_str()) {
-        None | Some(BINARY) => Some(false),
-        Some(GRAY) => Some(true),
-        Some(_) => None,
-    };
-    if let (Some(code), None) = (&code, gray) {
-        let shown = format!("{:?}", code.value);
-        let text = format!("unknown code; use \"{BINARY}\" or \"{GRAY}\"");
-        table.complain(code.line, CODE.name, &shown, &text);
-    }
+    let gray = one_of(table, &CODE, [(BINARY, false), (GRAY, true)]);
+    let parity = one_of(
+        table,
+        &PARITY,
+        PARITIES.map(|(word, parity, _)| (word, parity)),
+    );
     let twice = table.boolean(&TWICE);
     let spoken = Spoken::Ssi(SsiSpec {
         gray: gray?,
+        parity: parity?,
         twice: twice.map_or(false, |at| at.value),
     });
     Some(Wanted {
@@ -64,11 +60,33 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted> {
     })
 }
 
+/// What one of a few words stands for, the first one if nothing is written.
+fn one_of<T: Copy, const N: usize>(
+    table: &Table<'_, '_>,
+    key: &'static Key,
+    words: [(&str, T); N],
+) -> Option<T> {
+    let Some(told) = table.string(key) else {
+        return (!table.has(key.name)).then_some(words[0].1);
+    };
+    let found = words.iter().find(|(word, _)| *word == told.value);
+    if found.is_none() {
+        let known: Vec<String> = words.iter().map(|(word, _)| format!("{word:?}")).collect();
+        let text = format!("unknown {}; use {}", key.name, known.join(" or "));
+        table.complain(told.line, key.name, &format!("{:?}", told.value), &text);
+    }
+    found.map(|(_, value)| *value)
+}
+
 /// What decides what a channel does, for the hash of a card.
 pub fn canonical(asked: &SsiSpec, channel: &ChannelConfig) -> String {
-    let SsiSpec { gray, twice } = asked;
+    let SsiSpec {
+        gray,
+        twice,
+        parity,
+    } = asked;
     format!(
-        "ssi period_cycles {} first_low {} bits {} filter_cycles {} recovery {} gray {gray} twice {twice}",
+        "ssi period_cycles {} first_low {} bits {} filter_cycles {} recovery {} gray {gray} twice {twice} parity {parity:?}",
         channel.period_cycles,
         channel.first_low_extra_cycles,
         channel.position_bits,

@@ -41,7 +41,7 @@ pub struct SsiPort {
     pub period_cycles: Signal<In, Bits<11>>,
     /// How much longer than half a period the first low phase is.
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
-    /// Kind of frame, see [`frame`]: bit 0 Gray code, bit 1 each position twice, bit 2 a frame may go out.
+    /// Kind of frame, see [`frame`]: bit 0 Gray code, bit 1 each position twice, bit 2 a frame may go out, bit 3 parity.
     pub frame: Signal<In, Bits<6>>,
     /// Position width, 1 to 48 bits.
     pub position_bits: Signal<In, Bits<6>>,
@@ -76,6 +76,8 @@ pub struct SsiPort {
     word: Reg<Bits<48>>,
     again: Reg<Bits<48>>,
     sum: Reg<Bit>,
+    ones: Reg<Bit>,
+    not_even: Reg<Bit>,
     not_low: Reg<Bit>,
     lost: Reg<Bit>,
     slow: Reg<Bit>,
@@ -89,6 +91,9 @@ pub struct SsiPort {
     is_due: Signal<Local, Bit>,
     is_last: Signal<Local, Bit>,
     takes_bit: Signal<Local, Bit>,
+    bits: Signal<Local, Bits<6>>,
+    ends_copy: Signal<Local, Bit>,
+    is_parity: Signal<Local, Bit>,
     value: Signal<Local, Bit>,
     is_other: Signal<Local, Bit>,
     is_torn: Signal<Local, Bit>,
@@ -151,10 +156,15 @@ impl Logic for SsiPort {
     /// The clock, and whose turn it is.
     fn clock_frame(&mut self) {
         self.ended.d.next = false;
+        self.bits.next = self.position_bits.val();
+        if self.frame.val().get_bit(3) {
+            self.bits.next = self.position_bits.val() + 1;
+        }
+        self.ends_copy.next = !self.left.q.val().get_bits::<5>(1).any();
         // This rising edge takes the last bit of the frame.
         self.is_last.next = !self.latches.q.val()
             & !self.between.q.val()
-            & !self.left.q.val().get_bits::<5>(1).any()
+            & self.ends_copy.val()
             & (self.second.q.val() | !self.frame.val().get_bit(1));
         if self.state.q.val() == self.at_rest.val() {
             if self.trigger.val() {
@@ -166,8 +176,10 @@ impl Logic for SsiPort {
                 self.second.d.next = false;
                 self.before.d.next = false;
                 self.sum.d.next = false;
-                self.left.d.next = self.position_bits.val();
-                self.left_too.d.next = self.position_bits.val();
+                self.ones.d.next = false;
+                self.not_even.d.next = false;
+                self.left.d.next = self.bits.val();
+                self.left_too.d.next = self.bits.val();
                 if self.frame.val().get_bit(2) & self.filter.level.val() {
                     self.clk.d.next = false;
                     self.state.d.next = self.at_low.val();
@@ -224,25 +236,34 @@ impl Logic for SsiPort {
                 self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
             }
         }
+        self.is_parity.next = self.frame.val().get_bit(3) & self.ends_copy.val();
         if self.takes_bit.val() {
-            self.before.d.next = self.value.val();
             self.left.d.next = self.left.q.val() - 1;
             self.left_too.d.next = self.left_too.q.val() - 1;
-            if self.second.q.val() {
-                self.again.d.next =
-                    (self.again.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
+            // Of the bits as they are sent.
+            self.ones.d.next = self.ones.q.val() ^ self.filter.level.val();
+            if self.is_parity.val() {
+                self.not_even.d.next = self.not_even.q.val()
+                    | (self.ones.q.val() ^ self.filter.level.val() ^ self.frame.val().get_bit(4));
             } else {
-                self.word.d.next =
-                    (self.word.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
-                self.sum.d.next = self.sum.q.val() ^ self.value.val();
+                self.before.d.next = self.value.val();
+                if self.second.q.val() {
+                    self.again.d.next =
+                        (self.again.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
+                } else {
+                    self.word.d.next =
+                        (self.word.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
+                    self.sum.d.next = self.sum.q.val() ^ self.value.val();
+                }
             }
             // The second copy begins as the first one.
-            if !self.left.q.val().get_bits::<5>(1).any() & !self.second.q.val() {
+            if self.ends_copy.val() & !self.second.q.val() {
                 self.second.d.next = true;
                 self.between.d.next = true;
                 self.before.d.next = false;
-                self.left.d.next = self.position_bits.val();
-                self.left_too.d.next = self.position_bits.val();
+                self.ones.d.next = false;
+                self.left.d.next = self.bits.val();
+                self.left_too.d.next = self.bits.val();
             }
         }
         if (self.state.q.val() == self.at_rest.val()) & self.trigger.val() {
@@ -272,12 +293,13 @@ impl Logic for SsiPort {
         self.raised.next = bit_cast::<16, 1>(self.unknown.q.val().into())
             | (bit_cast::<16, 1>(self.not_high.q.val().into()) << 1)
             | (bit_cast::<16, 1>(self.not_low.q.val().into()) << 2)
-            | (bit_cast::<16, 1>(self.is_other.val().into()) << 3)
-            | (bit_cast::<16, 1>(self.is_upset.val().into()) << 4)
-            | (bit_cast::<16, 1>(self.lost.q.val().into()) << 5)
-            | (bit_cast::<16, 1>(self.slow.q.val().into()) << 6);
+            | (bit_cast::<16, 1>(self.not_even.q.val().into()) << 3)
+            | (bit_cast::<16, 1>(self.is_other.val().into()) << 4)
+            | (bit_cast::<16, 1>(self.is_upset.val().into()) << 5)
+            | (bit_cast::<16, 1>(self.lost.q.val().into()) << 6)
+            | (bit_cast::<16, 1>(self.slow.q.val().into()) << 7);
         self.primary.flags.next = self.raised.val();
-        self.good.next = !self.raised.val().get_bits::<5>(0).any();
+        self.good.next = !self.raised.val().get_bits::<6>(0).any();
     }
 
     /// The last good position, and why there is no newer one.

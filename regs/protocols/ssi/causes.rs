@@ -14,14 +14,17 @@ crate::causes::cause::causes! {
     DATA_NOT_LOW_AFTER = 3, "data_not_low_after", "data not low after the last bit";
         "DATA was HIGH behind the last bit, or between two copies: nothing is plugged in, the encoder has more bits than configured, or its bits come too late for this clock.",
         "Look at plug and supply; compare position_bits with the data sheet; lower clock_hz.";
-    COPIES_DIFFER = 4, "copies_differ", "the two copies differ";
+    PARITY = 4, "position_parity", "parity of the position";
+        "The parity bit behind the position does not fit it: a bit was disturbed, or the encoder has no parity, or the other one.",
+        "Look at termination and shield; lower clock_hz; compare parity with the data sheet.";
+    COPIES_DIFFER = 5, "copies_differ", "the two copies differ";
         "The position came twice, and not the same: a bit was disturbed, or the encoder takes a new position for each copy.",
         "Look at termination and shield; lower clock_hz; leave twice out if the encoder does not repeat.";
-    UPSET = 5, "upset", "stored data upset";
+    UPSET = 6, "upset", "stored data upset";
         same;
-    TRIGGER_OVERRUN = 6, "trigger_overrun", "trigger overrun";
+    TRIGGER_OVERRUN = 7, "trigger_overrun", "trigger overrun";
         same;
-    RECOVERY_TOO_LONG = 7, "recovery_too_long", "recovery time too long";
+    RECOVERY_TOO_LONG = 8, "recovery_too_long", "recovery time too long";
         "Behind the frame before, DATA was still LOW after recovery_max_ns: a trigger at the highest rate would meet the encoder there. The position is good.",
         "Raise recovery_max_ns to the encoder's monoflop time.";
 }

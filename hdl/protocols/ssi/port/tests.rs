@@ -173,6 +173,55 @@ fn what_is_wrong_has_its_cause_and_brings_no_position() {
     assert_eq!(rig.position(), 0x11);
 }
 
+/// The parity is of the bits as they are sent, and of each copy.
+#[test]
+fn a_parity_bit_that_does_not_fit_has_its_cause() {
+    for (frame, odd) in [
+        (12, false),
+        (13, false),
+        (15, false),
+        (28, true),
+        (31, true),
+    ] {
+        for value in [0u64, 1, 0x2A7, 0x1FFF] {
+            let fits = (value.count_ones() % 2 == 1) != odd;
+            let copy = |parity| [bits(value, 13), vec![parity]].concat();
+            let sent = |first, second| match frame & 2 {
+                0 => copy(first),
+                _ => [copy(first), vec![false], copy(second)].concat(),
+            };
+            let mut rig = Rig::new(frame, 13);
+            assert_eq!(
+                rig.frame(sent(fits, fits)),
+                cause::NONE,
+                "{frame} {value:x}"
+            );
+            assert_eq!(
+                rig.position(),
+                if frame & 1 == 1 {
+                    from_gray(value)
+                } else {
+                    value
+                }
+            );
+            assert_eq!(
+                rig.frame(sent(!fits, fits)),
+                cause::PARITY,
+                "{frame} {value:x}"
+            );
+            assert!(!rig.is_fresh());
+            if frame & 2 != 0 {
+                assert_eq!(
+                    rig.frame(sent(fits, !fits)),
+                    cause::PARITY,
+                    "{frame} {value:x}"
+                );
+            }
+            assert_eq!(rig.frame(sent(fits, fits)), cause::NONE);
+        }
+    }
+}
+
 #[test]
 fn a_line_that_is_low_is_not_clocked() {
     let mut rig = Rig::new(4, 12);
