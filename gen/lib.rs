@@ -45,8 +45,8 @@ mod zynq;
 use artifact::Artifact;
 use config::Project;
 use endat_hdl::card::bus::{
-    apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
-    wishbone::WishboneCard, HostBus,
+    ahb_lite::AhbLiteCard, apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard,
+    spi::SpiCard, wishbone::WishboneCard, HostBus,
 };
 use endat_hdl::card::uart_bridge::TIMEOUT_US;
 use endat_hdl::card::{bare_port, service_times, Card};
@@ -117,6 +117,7 @@ pub fn design_with(
         HostBus::Apb => of(ApbCard::with_times(card, times), name),
         HostBus::Wishbone => of(WishboneCard::with_times(card, times), name),
         HostBus::AxiLite => of(AxiLiteCard::with_times(card, times), name),
+        HostBus::AhbLite => of(AhbLiteCard::with_times(card, times), name),
         HostBus::Spi => of(SpiCard::with_times(card, times), name),
         HostBus::Parallel => of(ParallelCard::with_times(card, times), name),
         HostBus::Bare => of(bare_port(card), name),

@@ -8,7 +8,7 @@ use endat_regs::MAP_BYTES;
 /// Whether a card with this bus takes a key.
 pub fn takes(bus: HostBus, key: &Key) -> bool {
     match key.name {
-        name if name == KEY.name => bus.is_internal() && bus != HostBus::Bare,
+        name if name == KEY.name => bus.has_base(),
         name if name == SCK_HZ.name => bus == HostBus::Spi,
         _ => true,
     }
@@ -22,7 +22,12 @@ pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<u32> {
     };
     let problem = match u32::try_from(base.value) {
         _ if !bus.is_none_or(|bus| takes(bus, &KEY)) => {
-            "has a meaning behind apb, wishbone and axi_lite only; leave it out".into()
+            let takers = HostBus::ALL.iter().filter(|bus| bus.has_base());
+            let takers: Vec<&str> = takers.map(|bus| bus.name()).collect();
+            format!(
+                "has a meaning with {} only; leave it out",
+                takers.join(", ")
+            )
         }
         Err(_) => limits.to_string(),
         Ok(value) if value % MAP_BYTES != 0 => {

@@ -116,7 +116,7 @@ keys! {
         .note("as often as the link can carry the results").of(CARD_FORM).usual(Usual::Follows("`sample_hz`"));
 
     BUS = Key::text(&["host"], "bus", "what stands between the registers and the host ([bus.md](bus.md))").one_of(buses).usual(Usual::Word("uart"));
-    BASE_ADDRESS = Key::number(&["host"], "base_address", "where the system has the registers, in bytes, with `\"apb\"`, `\"wishbone\"` and `\"axi_lite\"`")
+    BASE_ADDRESS = Key::number(&["host"], "base_address", "where the system has the registers, in bytes, with a bus that has addresses of a system")
         .note("as `0x4000_0000`; it goes into the SVD, SystemRDL, C header and `_csr.csv`, not into the logic")
         .step(MAP_BYTES as u64).of(CARD_FORM).usual(Usual::Number(0));
     SCK_HZ = Key::number(&["host"], "sck_hz", "the host's clock, with `\"spi\"`")

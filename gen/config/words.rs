@@ -95,16 +95,7 @@ pub fn parts(parts: &[Part]) -> Vec<Choice> {
 
 /// All buses of cards, and that of a receiver.
 pub fn buses() -> Vec<Choice> {
-    let meaning = |bus: HostBus| match bus {
-        HostBus::Uart => "UART in the UARTBone format",
-        HostBus::Apb => "AMBA 3 APB",
-        HostBus::Wishbone => "Wishbone B4, classic",
-        HostBus::AxiLite => "AXI4-Lite",
-        HostBus::Spi => "SPI, mode 0, with check sums",
-        HostBus::Parallel => "asynchronous bus with eight registers of 16 bits",
-        HostBus::Bare => "one encoder port with its signals, no registers",
-    };
-    let cards = HostBus::ALL.map(|bus| Choice::new(bus.name(), meaning(bus)));
+    let cards = HostBus::ALL.map(|bus| Choice::new(bus.name(), bus.row().means));
     let receiver = Choice::new(RECEIVER_BUS, "a T-format receiver instead of a card");
     cards.into_iter().chain([receiver]).collect()
 }

@@ -77,6 +77,7 @@ pub fn of(bus: HostBus, ports: &[Port]) -> Option<Interface> {
         HostBus::Apb => ("s_apb", "xilinx.com:interface:apb", ""),
         HostBus::Wishbone => ("wb", "", "wishbone"),
         HostBus::AxiLite => ("s_axi", "xilinx.com:interface:aximm", "axi"),
+        HostBus::AhbLite => ("s_ahb", "xilinx.com:interface:ahblite", ""),
         HostBus::Spi | HostBus::Parallel | HostBus::Bare => return None,
     };
     let prefix = format!("{name}_");
@@ -114,10 +115,12 @@ pub fn of(bus: HostBus, ports: &[Port]) -> Option<Interface> {
             (class, bits)
         }
         HostBus::Apb => (String::new(), width("paddr")?),
+        HostBus::AhbLite => (String::new(), width("haddr")?),
         _ => (String::new(), 0),
     };
     let ipxact = |end: &str| match bus {
         HostBus::Apb => vlnv("amba.com", "AMBA3", "APB", end, "r1p0_0"),
+        HostBus::AhbLite => vlnv("amba.com", "AMBA3", "AHBLite", end, "r2p0_0"),
         HostBus::AxiLite => vlnv("amba.com", "AMBA4", "AXI4-Lite", end, "r0p0_0"),
         HostBus::Wishbone => vlnv("opencores.org", "interface", "wishbone", end, "B4"),
         _ => String::new(),

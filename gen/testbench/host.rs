@@ -83,6 +83,19 @@ const AXI_LITE: &[(&str, &str)] = &[
     ("s_axi_rvalid", "rvalid"),
     ("s_axi_rready", "rready"),
 ];
+const AHB_LITE: &[(&str, &str)] = &[
+    ("s_ahb_hsel", "hsel"),
+    ("s_ahb_htrans", "{hsel, 1'b0}"),
+    ("s_ahb_hwrite", "hwrite"),
+    ("s_ahb_hsize", "3'd2"),
+    ("s_ahb_haddr", "haddr"),
+    ("s_ahb_hwdata", "hwdata"),
+    // There is nobody else on the bus.
+    ("s_ahb_hready", "hreadyout"),
+    ("s_ahb_hrdata", "hrdata"),
+    ("s_ahb_hreadyout", "hreadyout"),
+    ("s_ahb_hresp", "hresp"),
+];
 const SPI: &[(&str, &str)] = &[
     ("spi_sck_i", "spi_sck"),
     ("spi_cs_n_i", "spi_cs_n"),
@@ -121,6 +134,10 @@ pub fn host(bus: HostBus, card: &CardConfig) -> Result<Option<Host>, GenError> {
         HostBus::AxiLite => {
             let own = include_str!("../templates/bench_host/axi_lite.v");
             (own, WORDS, AXI_LITE)
+        }
+        HostBus::AhbLite => {
+            let own = include_str!("../templates/bench_host/ahb_lite.v");
+            (own, WORDS, AHB_LITE)
         }
         HostBus::Spi => (include_str!("../templates/bench_host/spi.v"), "", SPI),
         HostBus::Parallel => {

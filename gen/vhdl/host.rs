@@ -78,6 +78,7 @@ impl Host {
             HostBus::Apb => access_apb(bench, address, value),
             HostBus::Wishbone => access_wishbone(bench, address, value),
             HostBus::AxiLite => access_axi_lite(bench, address, value),
+            HostBus::AhbLite => access_ahb_lite(bench, address, value),
             _ => access_parallel(bench, address, value),
         }
     }
@@ -170,6 +171,31 @@ fn access_wishbone(bench: &mut Bench<Compiled>, address: u64, value: Option<u32>
     bench.run_cycles(1);
     set_all(bench, &[("wb_cyc_i", 0), ("wb_stb_i", 0)]);
     bench.run_cycles(1);
+    answered.then_some(word)
+}
+
+fn access_ahb_lite(bench: &mut Bench<Compiled>, address: u64, value: Option<u32>) -> Option<u32> {
+    let request = [
+        ("s_ahb_hsel", 1),
+        ("s_ahb_htrans", 2),
+        ("s_ahb_hsize", 2),
+        ("s_ahb_hready", 1),
+        ("s_ahb_hwrite", value.is_some().into()),
+        ("s_ahb_haddr", u128::from(4 * address)),
+    ];
+    set_all(bench, &request);
+    bench.run_cycles(1);
+    let data = [
+        ("s_ahb_hsel", 0),
+        ("s_ahb_htrans", 0),
+        ("s_ahb_hready", 0),
+        ("s_ahb_hwdata", value.unwrap_or_default().into()),
+    ];
+    set_all(bench, &data);
+    let answered = until(bench, "s_ahb_hreadyout");
+    let word = bench.get("s_ahb_hrdata") as u32;
+    bench.set("s_ahb_hready", 1);
+    bench.run_cycles(2);
     answered.then_some(word)
 }
 

@@ -14,6 +14,8 @@ pub enum Words {
     Wishbone,
     /// AXI4-Lite.
     AxiLite,
+    /// AHB-Lite.
+    AhbLite,
     /// SPI, mode 0, with check sums.
     Spi,
     /// The window of the parallel bus.
@@ -70,6 +72,7 @@ impl Words {
             HostBus::Apb => Self::Apb,
             HostBus::Wishbone => Self::Wishbone,
             HostBus::AxiLite => Self::AxiLite,
+            HostBus::AhbLite => Self::AhbLite,
             HostBus::Spi => Self::Spi,
             HostBus::Parallel => Self::Parallel,
             HostBus::Uart | HostBus::Bare => return None,
@@ -92,6 +95,7 @@ impl Words {
                 card,
                 &[("bus_cs_n_i", 1), ("bus_rd_n_i", 1), ("bus_wr_n_i", 1)],
             ),
+            Self::AhbLite => set_all(card, &[("s_ahb_hready", 1), ("s_ahb_hsize", 2)]),
             Self::Apb | Self::Wishbone | Self::AxiLite => {}
         }
     }
@@ -111,6 +115,7 @@ impl Words {
             Self::Apb => apb(card, address, None),
             Self::Wishbone => wishbone(card, address, None),
             Self::AxiLite => axi_read(card, address),
+            Self::AhbLite => ahb(card, address, None),
             Self::Spi => spi_read(card, address, 1)[0],
             Self::Parallel => {
                 put(card, WINDOW, address.into());
@@ -127,6 +132,7 @@ impl Words {
             Self::Apb => drop(apb(card, address, Some(word))),
             Self::Wishbone => drop(wishbone(card, address, Some(word))),
             Self::AxiLite => axi_write(card, address, word),
+            Self::AhbLite => drop(ahb(card, address, Some(word))),
             Self::Spi => spi_write(card, address, word),
             Self::Parallel => {
                 put(card, WINDOW, u32::from(address) | WINDOW_WRITES);
@@ -213,6 +219,36 @@ fn axi_write(card: &mut Card, address: u16, word: u32) {
     set_all(card, &[("s_axi_wdata", word), ("s_axi_wstrb", 0xF)]);
     offer(card, "s_axi_wvalid", "s_axi_wready");
     take(card, "s_axi_bvalid", "s_axi_bready");
+}
+
+/// Address phase and data phase, one after the other; nobody else is on the bus.
+fn ahb(card: &mut Card, address: u16, write: Option<u32>) -> u32 {
+    set_all(
+        card,
+        &[
+            ("s_ahb_hsel", 1),
+            ("s_ahb_htrans", 2),
+            ("s_ahb_haddr", u32::from(address) << 2),
+            ("s_ahb_hwrite", write.is_some().into()),
+        ],
+    );
+    card.tick();
+    set_all(
+        card,
+        &[
+            ("s_ahb_hsel", 0),
+            ("s_ahb_htrans", 0),
+            ("s_ahb_hready", 0),
+            ("s_ahb_hwdata", write.unwrap_or(0)),
+        ],
+    );
+    let word = match comes(card, &["s_ahb_hreadyout"]) {
+        true => card.get("s_ahb_hrdata") as u32,
+        false => 0,
+    };
+    card.set("s_ahb_hready", 1);
+    card.tick();
+    word
 }
 
 /// A frame of SPI; what came back.

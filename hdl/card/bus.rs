@@ -7,6 +7,7 @@
 //! A front knows its bus and nothing of registers; [`word_access`] turns one word of it into the bank's bytes and decides which
 //! words belong to one moment. See `docs/bus.md`.
 
+pub mod ahb_lite;
 pub mod apb;
 pub mod axi_lite;
 pub mod parallel;
@@ -27,6 +28,8 @@ pub enum HostBus {
     Wishbone,
     /// AXI4-Lite slave.
     AxiLite,
+    /// AMBA 3 AHB-Lite subordinate.
+    AhbLite,
     /// SPI slave, mode 0, with check sums.
     Spi,
     /// Asynchronous bus with eight registers of 16 bits.
@@ -35,29 +38,71 @@ pub enum HostBus {
     Bare,
 }
 
+/// What there is to know of a bus.
+#[derive(Clone, Copy, Debug)]
+pub struct BusRow {
+    /// Name in a configuration.
+    pub name: &'static str,
+    /// The same in words.
+    pub means: &'static str,
+    /// Where its signals go.
+    pub place: Place,
+}
+
+/// Where the signals of a bus go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// To pins of a board.
+    Pins,
+    /// They stay inside the chip, behind addresses of a system.
+    System,
+    /// They stay inside the chip, without addresses.
+    Inside,
+}
+
+const fn row(name: &'static str, means: &'static str, place: Place) -> BusRow {
+    BusRow { name, means, place }
+}
+
 impl HostBus {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Uart,
         Self::Apb,
         Self::Wishbone,
         Self::AxiLite,
+        Self::AhbLite,
         Self::Spi,
         Self::Parallel,
         Self::Bare,
     ];
 
+    /// What there is to know of it.
+    pub const fn row(self) -> BusRow {
+        use Place::{Inside, Pins, System};
+        match self {
+            Self::Uart => row("uart", "UART in the UARTBone format", Pins),
+            Self::Apb => row("apb", "AMBA 3 APB", System),
+            Self::Wishbone => row("wishbone", "Wishbone B4, classic", System),
+            Self::AxiLite => row("axi_lite", "AXI4-Lite", System),
+            Self::AhbLite => row("ahb_lite", "AMBA 3 AHB-Lite", System),
+            Self::Spi => row("spi", "SPI, mode 0, with check sums", Pins),
+            Self::Parallel => row(
+                "parallel",
+                "asynchronous bus with eight registers of 16 bits",
+                Pins,
+            ),
+            Self::Bare => row(
+                "none",
+                "one encoder port with its signals, no registers",
+                Inside,
+            ),
+        }
+    }
+
     /// Name in a configuration.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Uart => "uart",
-            Self::Apb => "apb",
-            Self::Wishbone => "wishbone",
-            Self::AxiLite => "axi_lite",
-            Self::Spi => "spi",
-            Self::Parallel => "parallel",
-            Self::Bare => "none",
-        }
+        self.row().name
     }
 
     /// The bus of this name.
@@ -67,9 +112,11 @@ impl HostBus {
 
     /// Whether its signals stay inside the chip, so that no board has pins for them.
     pub const fn is_internal(self) -> bool {
-        matches!(
-            self,
-            Self::Apb | Self::Wishbone | Self::AxiLite | Self::Bare
-        )
+        !matches!(self.row().place, Place::Pins)
+    }
+
+    /// Whether the registers have addresses of a system there.
+    pub const fn has_base(self) -> bool {
+        matches!(self.row().place, Place::System)
     }
 }

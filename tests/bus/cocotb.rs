@@ -13,6 +13,7 @@ fn masters_of_cocotb_read_write_and_trigger() {
         let module = match name {
             "axi_lite" => "cocotbext.axi",
             "apb" => "cocotbext.apb",
+            "ahb_lite" => "cocotbext.ahb",
             _ => "cocotbext.wishbone",
         };
         let check = format!("cocotb masters, {name}");

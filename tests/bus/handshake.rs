@@ -204,3 +204,76 @@ fn axi_ready_comes_from_registers() {
         master.tick();
     }
 }
+
+/// The next address stands beside the data, whether the bus says in the waits that it is ready or not; words of one moment come in any order.
+#[test]
+fn ahb_transfers_stand_beside_each_other() {
+    for is_alone in [false, true] {
+        let mut master = Master::new(HostBus::AhbLite, "");
+        let before: Vec<u32> = [0, 1, 2]
+            .map(|n| master.transfer(SCRATCH + 4 * n, None, 15).word)
+            .into();
+        // Read, write, read, write, ... of three words: each write turns what the read before it has shown.
+        let mut shown = vec![];
+        let order = (0..12).map(|n| (SCRATCH + 4 * (n / 2 % 3), n % 2 == 1));
+        let order: Vec<(u32, bool)> = order.collect();
+        for at in 0..=order.len() {
+            match order.get(at) {
+                Some((address, writes)) => {
+                    master.set("s_ahb_hsel", 1);
+                    master.set("s_ahb_htrans", 2);
+                    master.set("s_ahb_haddr", *address);
+                    master.set("s_ahb_hwrite", (*writes).into());
+                    master.set("s_ahb_hsize", 2);
+                }
+                None => master.set("s_ahb_htrans", 0),
+            }
+            // The data phase of the one before.
+            for _ in 0..300 {
+                if master.high("s_ahb_hreadyout") {
+                    break;
+                }
+                master.set("s_ahb_hready", is_alone.into());
+                master.tick();
+            }
+            assert!(master.high("s_ahb_hreadyout") && !master.high("s_ahb_hresp"));
+            if at > 0 && !order[at - 1].1 {
+                shown.push(master.bench.get("s_ahb_hrdata") as u32);
+            }
+            master.set("s_ahb_hready", 1);
+            master.tick();
+            let word = shown.last().map_or(0, |word| !word);
+            master.set("s_ahb_hwdata", word);
+        }
+        let twice: Vec<u32> = before
+            .iter()
+            .copied()
+            .chain(before.iter().map(|w| !w))
+            .collect();
+        assert_eq!(shown, twice, "{is_alone}");
+    }
+}
+
+#[test]
+fn ahb_refuses_what_is_no_word_in_two_cycles_and_does_nothing() {
+    let mut master = Master::new(HostBus::AhbLite, "");
+    let before = master.transfer(SCRATCH, None, 15).word;
+    for (low, selects) in [(1, 15), (2, 15), (0, 1)] {
+        let answer = master.transfer(SCRATCH | low, Some(!before), selects);
+        assert!(answer.refused && answer.cycles == 3, "{answer:?}");
+    }
+    assert_eq!(master.transfer(SCRATCH, None, 15).word, before);
+    // Another one's transfer, and none at all.
+    for (select, trans) in [(0, 2), (1, 0), (1, 1)] {
+        master.set("s_ahb_hsel", select);
+        master.set("s_ahb_htrans", trans);
+        master.set("s_ahb_hwrite", 1);
+        master.set("s_ahb_haddr", SCRATCH);
+        master.set("s_ahb_hwdata", !before);
+        for _ in 0..60 {
+            master.tick();
+            assert!(master.high("s_ahb_hreadyout"));
+        }
+    }
+    assert_eq!(master.transfer(SCRATCH, None, 15).word, before);
+}

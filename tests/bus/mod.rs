@@ -30,7 +30,12 @@ use rtl_design::elaborate::Design;
 use rtl_design::engine::Compiled;
 
 /// Every front with words of 32 bits.
-pub const WORD_BUSES: [HostBus; 3] = [HostBus::Apb, HostBus::Wishbone, HostBus::AxiLite];
+pub const WORD_BUSES: [HostBus; 4] = [
+    HostBus::Apb,
+    HostBus::Wishbone,
+    HostBus::AxiLite,
+    HostBus::AhbLite,
+];
 
 /// A configuration of two channels with a bus.
 pub fn text(bus: HostBus, more: &str) -> String {
@@ -184,6 +189,7 @@ impl Master {
             HostBus::Apb => self.apb(address, write),
             HostBus::Wishbone => self.wishbone(address, write, selects),
             HostBus::AxiLite => self.axi(address, write, selects),
+            HostBus::AhbLite => self.ahb(address, write, selects),
             _ => unreachable!("no bus with words"),
         }
     }
@@ -237,6 +243,42 @@ impl Master {
             !self.high("wb_ack_o") && !self.high("wb_err_o"),
             "one cycle"
         );
+        Answer {
+            word,
+            refused,
+            cycles,
+        }
+    }
+
+    /// Address phase, data phase; a part of a word is a smaller size.
+    fn ahb(&mut self, address: u32, write: Option<u32>, selects: u32) -> Answer {
+        self.set("s_ahb_hsel", 1);
+        self.set("s_ahb_htrans", 2);
+        self.set("s_ahb_haddr", address);
+        self.set("s_ahb_hwrite", write.is_some().into());
+        self.set("s_ahb_hsize", if selects == 15 { 2 } else { 0 });
+        self.set("s_ahb_hready", 1);
+        assert!(
+            self.high("s_ahb_hreadyout"),
+            "not ready before the transfer"
+        );
+        self.tick();
+        // What stands beside the data phase is nobody's.
+        self.set("s_ahb_hready", 0);
+        let other = self.rng.in_range(0, 3) as u32;
+        self.set("s_ahb_htrans", other);
+        self.set("s_ahb_haddr", 4 * other);
+        self.set("s_ahb_hwdata", write.unwrap_or(0xdead_beef));
+        let has_error = self.high("s_ahb_hresp");
+        let cycles = 1 + self.wait_for(&["s_ahb_hreadyout"]);
+        let word = self.bench.get("s_ahb_hrdata") as u32;
+        let refused = self.high("s_ahb_hresp");
+        assert_eq!(has_error, refused, "both cycles of an error");
+        self.set("s_ahb_hready", 1);
+        self.set("s_ahb_htrans", 0);
+        self.tick();
+        self.set("s_ahb_hsel", 0);
+        assert!(!self.high("s_ahb_hresp"), "two cycles");
         Answer {
             word,
             refused,

@@ -44,7 +44,7 @@ fn it_passes_on_cards() {
 
 #[test]
 fn it_fails_on_every_broken_port() {
-    let narrow = format!("{SSI}position_bits = 7\nclock_hz = 1_000_000\ncable_m = 10\ncode = \"gray\"\nparity = \"even\"\ntwice = true\n");
+    let narrow = format!("{SSI}position_bits = 7\nclock_hz = 1_000_000\ncable_m = 10\ncode = \"gray\"\nparity = \"odd\"\ntwice = true\n");
     check_mutations("ssi", &emitted(32_000_000, &[&narrow], ""), MUTATIONS);
 }
 

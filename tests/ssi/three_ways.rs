@@ -4,6 +4,7 @@ use super::{bench, block, design, link};
 use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::protocols::ssi::cause;
+use endat_hdl::protocols::ssi::port::frame;
 use endat_sim::rng::Rng;
 use endat_sim::ssi::{Defect, EncoderConfig};
 use endat_sim::{NS, US};
@@ -32,17 +33,22 @@ fn recorded() -> Stimulus {
     bench.run_for(5 * US);
     for round in 0..60 {
         if bench.get("busy") == 0 {
-            bench.set("command", [6, 7, 4, 6, 14, 5, 7, 30, 0][round % 9]);
+            let command = [6, 7, 4, 12, 14, 5, 30, 7, 0][round % 9];
+            bench.set("command", command);
             bench.set(
                 "first_low_extra_cycles",
                 u128::from(rng.in_range(0, 1)) * 13,
             );
+            let odd = command >> frame::ODD & 1 == 1;
+            let config = &mut link(&mut bench).encoder_mut().config;
+            config.parity = (command >> frame::PARITY & 1 == 1).then_some(odd);
         }
+        let copy = rng.in_range(0, 1) as usize;
         link(&mut bench).encoder_mut().config.defect = match rng.in_range(0, 7) {
             0 => Defect::Silent,
             1 => Defect::StuckLow,
             2 => Defect::Longer(2),
-            3 => Defect::Flip { copy: 1, bit: 3 },
+            3 => Defect::Flip { copy, bit: 3 },
             _ => Defect::None,
         };
         bench.trigger();
