@@ -51,6 +51,7 @@ fn recorded() -> Stimulus {
             3 => Defect::Flip { copy, bit: 3 },
             _ => Defect::None,
         };
+        bench.run_for(rng.in_range(0, 3) * US);
         bench.trigger();
         bench.run_for(rng.in_range(4, 70) * US);
     }
