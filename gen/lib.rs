@@ -12,6 +12,7 @@ pub mod artifact;
 pub mod bench;
 pub mod bitstream;
 pub mod board;
+pub(crate) mod buses;
 pub mod campaign;
 pub mod cli;
 pub mod config;
@@ -22,6 +23,7 @@ pub(crate) mod encoders;
 pub mod error;
 pub mod explain;
 pub(crate) mod form;
+pub(crate) mod front;
 pub mod integration;
 pub mod json_schema;
 pub mod language;
@@ -43,18 +45,15 @@ pub mod wiring;
 mod zynq;
 
 use artifact::Artifact;
+use buses::front;
 use config::Project;
-use endat_hdl::card::bus::{
-    ahb_lite::AhbLiteCard, apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard,
-    spi::SpiCard, wishbone::WishboneCard, HostBus,
-};
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::service_times;
 use endat_hdl::card::uart_bridge::TIMEOUT_US;
-use endat_hdl::card::{bare_port, service_times, Card};
 use endat_hdl::endat::service::program::ServiceTimes;
 use error::GenError;
 use language::Language;
-use rtl_design::elaborate::{elaborate, Design};
-use rust_hdl::prelude::Block;
+use rtl_design::elaborate::Design;
 use std::collections::BTreeSet;
 
 /// All files of a project, the MANIFEST last.
@@ -107,21 +106,8 @@ pub fn design_with(
     times: &ServiceTimes,
     link_timeout_us: u64,
 ) -> Result<Design, GenError> {
-    fn of(mut card: impl Block, name: &str) -> Result<Design, GenError> {
-        card.connect_all();
-        elaborate(&card, name).map_err(|e| GenError::fault("design", &e))
-    }
     let (card, name) = (&project.card, &project.name);
-    let design = match project.bus {
-        HostBus::Uart => of(Card::with_times(card, link_timeout_us, times), name),
-        HostBus::Apb => of(ApbCard::with_times(card, times), name),
-        HostBus::Wishbone => of(WishboneCard::with_times(card, times), name),
-        HostBus::AxiLite => of(AxiLiteCard::with_times(card, times), name),
-        HostBus::AhbLite => of(AhbLiteCard::with_times(card, times), name),
-        HostBus::Spi => of(SpiCard::with_times(card, times), name),
-        HostBus::Parallel => of(ParallelCard::with_times(card, times), name),
-        HostBus::Bare => of(bare_port(card), name),
-    }?;
+    let design = front(project.bus).design(card, name, times, link_timeout_us)?;
     Ok(Design {
         has_initial_values: card.initial_values,
         ..design

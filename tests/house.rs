@@ -435,8 +435,8 @@ fn the_compiler_knows_no_endat() {
     }
 }
 
-/// Whether a file names a protocol in its code; what stands in texts and comments says something to people only.
-fn names_protocol(source: &Source, is_named: fn(&str) -> bool) -> bool {
+/// Whether a file has such a name in its code; what stands in texts and comments says something to people only.
+fn is_naming(source: &Source, is_named: fn(&str) -> bool) -> bool {
     struct Search {
         is_named: fn(&str) -> bool,
         found: bool,
@@ -483,13 +483,24 @@ fn names_protocol(source: &Source, is_named: fn(&str) -> bool) -> bool {
     search.found
 }
 
+/// Catches a new place that asks which bus a card stands behind: the next front would have to be told there, too. Shown by the one that came last.
+#[test]
+fn a_bus_is_known_by_name_in_few_places() {
+    let sources = sources();
+    let others = sources.iter().filter(|s| !s.path.contains("ahb"));
+    let is_ahb = |name: &str| name.to_lowercase().starts_with("ahb");
+    let naming = others.filter(|s| is_naming(s, is_ahb));
+    let naming: Vec<&str> = naming.map(|s| s.path.as_str()).collect();
+    assert_eq!(naming, ["gen/buses.rs", "hdl/card/bus.rs"]);
+}
+
 /// Catches a new place that asks which protocol a channel speaks instead of asking the protocol: the next one would have to be told there, too.
 #[test]
 fn a_protocol_is_known_by_name_in_few_places() {
     let sources = sources();
     let found = |folder: &str, is_named: fn(&str) -> bool| -> Vec<String> {
         let others = sources.iter().filter(|s| !s.path.contains(folder));
-        let naming = others.filter(|s| names_protocol(s, is_named));
+        let naming = others.filter(|s| is_naming(s, is_named));
         naming.map(|s| s.path.clone()).collect()
     };
     // What a third protocol takes, shown by the one that came third.

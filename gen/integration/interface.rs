@@ -1,6 +1,8 @@
 //! The bus of a core as tools know it that connect by interface: its name there, and which port is which of its signals.
 
 use super::Port;
+use crate::buses::front;
+use crate::front::Unused;
 use endat_hdl::card::bus::HostBus;
 use serde::Serialize;
 
@@ -16,28 +18,6 @@ pub struct Signal {
     /// Where LiteX has it in its record; empty where LiteX has no such bus.
     litex: String,
 }
-
-/// An input that nothing looks at.
-#[derive(Serialize)]
-pub struct Unused {
-    name: &'static str,
-    logical: &'static str,
-    width: usize,
-}
-
-/// AXI4-Lite's inputs of that kind.
-const PROTECTION: [Unused; 2] = [
-    Unused {
-        name: "s_axi_awprot",
-        logical: "awprot",
-        width: 3,
-    },
-    Unused {
-        name: "s_axi_arprot",
-        logical: "arprot",
-        width: 3,
-    },
-];
 
 /// A bus interface.
 #[derive(Serialize)]
@@ -72,107 +52,46 @@ impl Interface {
 
 /// The interface of a card with this bus; `None` where no tool connects it as one.
 pub fn of(bus: HostBus, ports: &[Port]) -> Option<Interface> {
-    let (name, vivado, litex_module) = match bus {
-        HostBus::Uart => ("uart", "xilinx.com:interface:uart", ""),
-        HostBus::Apb => ("s_apb", "xilinx.com:interface:apb", ""),
-        HostBus::Wishbone => ("wb", "", "wishbone"),
-        HostBus::AxiLite => ("s_axi", "xilinx.com:interface:aximm", "axi"),
-        HostBus::AhbLite => ("s_ahb", "xilinx.com:interface:ahblite", ""),
-        HostBus::Spi | HostBus::Parallel | HostBus::Bare => return None,
-    };
-    let prefix = format!("{name}_");
+    let known = front(bus).interface()?;
+    let prefix = format!("{}_", known.name);
     let own = ports.iter().filter_map(|port| {
         let rest = port.name.strip_prefix(&prefix)?;
         Some((port, rest))
     });
+    let logical = |rest: &str| {
+        let named = known.logical.iter().find(|(own, _)| *own == rest);
+        named.map_or(rest.to_ascii_uppercase(), |(_, logical)| (*logical).into())
+    };
+    let field = known.litex.as_ref().map(|litex| litex.field);
     let signals = own.clone().map(|(port, rest)| Signal {
-        logical: match rest {
-            "rx_i" => "RxD".into(),
-            "tx_o" => "TxD".into(),
-            rest => rest.to_ascii_uppercase(),
-        },
+        logical: logical(rest),
         port: port.name.clone(),
         is_output: port.direction == "out",
-        litex: match bus {
-            HostBus::Wishbone => wishbone_field(rest),
-            HostBus::AxiLite => axi_field(rest, port.width),
-            _ => String::new(),
-        },
+        litex: field.map(|of| of(rest, port.width)).unwrap_or_default(),
     });
     let width = |rest: &str| own.clone().find(|(_, r)| *r == rest).map(|(p, _)| p.width);
-    let (litex, address_bits) = match bus {
-        HostBus::Wishbone => {
-            let bits = width("adr_i")?;
-            let class =
-                format!("wishbone.Interface(data_width=32, adr_width={bits}, addressing=\"word\")");
-            // Words of four bytes.
-            (class, bits + 2)
-        }
-        HostBus::AxiLite => {
-            let bits = width("awaddr")?;
-            // LiteX joins interfaces of the system's width only.
-            let class = "axi.AXILiteInterface(data_width=32, address_width=32)".into();
-            (class, bits)
-        }
-        HostBus::Apb => (String::new(), width("paddr")?),
-        HostBus::AhbLite => (String::new(), width("haddr")?),
-        _ => (String::new(), 0),
+    let address = match known.address {
+        Some((rest, unit)) => Some((width(rest)?, unit)),
+        None => None,
     };
-    let ipxact = |end: &str| match bus {
-        HostBus::Apb => vlnv("amba.com", "AMBA3", "APB", end, "r1p0_0"),
-        HostBus::AhbLite => vlnv("amba.com", "AMBA3", "AHBLite", end, "r2p0_0"),
-        HostBus::AxiLite => vlnv("amba.com", "AMBA4", "AXI4-Lite", end, "r0p0_0"),
-        HostBus::Wishbone => vlnv("opencores.org", "interface", "wishbone", end, "B4"),
-        _ => String::new(),
-    };
+    let bits = address.map_or(String::new(), |(bits, _)| bits.to_string());
+    let litex = known.litex.as_ref();
+    let ipxact = |end: &str| known.ipxact.map_or(String::new(), |name| vlnv(name, end));
     Some(Interface {
-        name,
-        vivado,
+        name: known.name,
+        vivado: known.vivado,
         ipxact: ipxact(""),
         ipxact_rtl: ipxact("_rtl"),
-        platform_designer: match bus {
-            HostBus::Apb => "apb",
-            HostBus::AxiLite => "axi4lite",
-            _ => "",
-        },
-        unused: match bus {
-            HostBus::AxiLite => PROTECTION.into(),
-            _ => vec![],
-        },
-        litex,
-        litex_module,
+        platform_designer: known.platform_designer,
+        unused: known.unused.into(),
+        litex: litex.map_or(String::new(), |litex| litex.class.replace("BITS", &bits)),
+        litex_module: litex.map_or("", |litex| litex.module),
         signals: signals.collect(),
-        size_bytes: if address_bits == 0 {
-            0
-        } else {
-            1 << address_bits
-        },
+        size_bytes: address.map_or(0, |(bits, unit)| unit << bits),
     })
 }
 
 /// Vendor, library, name and version as attributes; `end` is that of the name.
-fn vlnv(vendor: &str, library: &str, name: &str, end: &str, version: &str) -> String {
+fn vlnv([vendor, library, name, version]: [&str; 4], end: &str) -> String {
     format!("vendor=\"{vendor}\" library=\"{library}\" name=\"{name}{end}\" version=\"{version}\"")
-}
-
-/// `dat_i` is what the master writes.
-fn wishbone_field(rest: &str) -> String {
-    match rest {
-        "dat_i" => "dat_w".into(),
-        "dat_o" => "dat_r".into(),
-        rest => rest.trim_end_matches("_i").trim_end_matches("_o").into(),
-    }
-}
-
-/// `awaddr` is `addr` of the channel `aw`, as many bits as the port has.
-fn axi_field(rest: &str, width: usize) -> String {
-    let channels = ["aw", "ar", "w", "r", "b"];
-    let split = channels.iter().find_map(|channel| {
-        let field = rest.strip_prefix(channel)?;
-        Some(match field {
-            "addr" => format!("{channel}.{field}[:{width}]"),
-            _ => format!("{channel}.{field}"),
-        })
-    });
-    split.unwrap_or_default()
 }

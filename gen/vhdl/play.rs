@@ -1,9 +1,11 @@
 //! The run that the bench of a core plays again: the design in the compiled engine, encoder models on its lines, a host at its bus.
 
-use super::host::{strobe, Host};
+use super::host::Host;
+use crate::buses::parallel::Dsp;
 use crate::config::{Project, Receiver};
 use crate::encoders;
 use crate::error::GenError;
+use crate::front::Controller;
 use crate::protocols::other;
 use crate::protocols::t_format::encoder::sound;
 use endat_hdl::card::bus::HostBus;
@@ -231,9 +233,7 @@ pub fn receiver(receiver: &Receiver, design: &Design) -> Result<Played, GenError
         ..PinNames::channel()
     };
     bench.add_t_format(&names, sound(BIT_HZ, 0));
-    for strobe in ["bus_cs_n_i", "bus_rd_n_i", "bus_wr_n_i"] {
-        bench.set(strobe, 1);
-    }
+    Dsp.rest(&mut bench);
     bench.record_cycles();
     let mut known_from = 0;
     if !receiver.initial_values {
@@ -243,10 +243,10 @@ pub fn receiver(receiver: &Receiver, design: &Design) -> Result<Played, GenError
     bench.run_cycles(BEHIND_CYCLES);
     let mut good = 0;
     let exchange = cycles_at_least(200_000, system_hz);
-    for id in [u16::from(receiver.start.request_id), 0, 1, 2] {
-        strobe(&mut bench, 0, Some(id));
+    for id in [u32::from(receiver.start.request_id), 0, 1, 2] {
+        Dsp.write(&mut bench, 0, id);
         bench.run_cycles(exchange);
-        let words: Vec<u16> = (0..8).map(|at| strobe(&mut bench, at, None)).collect();
+        let words = Dsp.read(&mut bench, 0, 8, true);
         good += usize::from(words[1] >> 7 & 1 == 1);
     }
     bench.trigger();

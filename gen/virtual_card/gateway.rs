@@ -1,14 +1,14 @@
 //! A controller between a host and the bus of a card: words in the UARTBone format, each an access over the pins.
 //!
 //! ```text
-//! host's bytes <-> Gateway <-> Words <-> pins of the bus
+//! host's bytes <-> Gateway <-> Controller <-> pins of the bus
 //! ```
 //!
 //! What a card with a UART does by itself, this one does for it: frames of the stream go out between two answers while the host has asked
 //! for that, whether they come out of `card.stream_data` or are [made](super::sets).
 
 use super::sets::Sets;
-use super::words::Words;
+use crate::front::Controller;
 use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNELS_MAX, RESULT_BASE};
 use endat_sim::bench::Bench;
 use rtl_design::engine::Compiled;
@@ -30,7 +30,7 @@ const OUTBOX_MAX: usize = 1 << 15;
 
 /// The controller.
 pub struct Gateway {
-    words: Words,
+    words: &'static dyn Controller,
     inbox: VecDeque<u8>,
     outbox: VecDeque<u8>,
     /// When the last byte came, and how long half a command waits for more, in cycles.
@@ -57,7 +57,7 @@ fn at(block: &Block, name: &str) -> u16 {
 impl Gateway {
     /// A controller at the pins of this bus; `sets`, if there are any, stand for the card's own stream.
     pub fn new(
-        words: Words,
+        words: &'static dyn Controller,
         card: &mut Bench<Compiled>,
         timeout_us: u64,
         sets: Option<Sets>,
@@ -170,7 +170,7 @@ impl Gateway {
         let Some(place) = (address < self.words.addresses()).then_some(address as u16) else {
             return;
         };
-        if self.words != Words::Dsp && place == at(&CARD, "stream_control") {
+        if self.words.has_registers() && place == at(&CARD, "stream_control") {
             self.pushes = word & PUSH != 0;
             self.marks |= self.pushes;
             let collects = self.sets.is_none() && word & COLLECT != 0;
@@ -206,7 +206,7 @@ impl Gateway {
             let back = usize::from(at(&CARD, name)).checked_sub(address as usize)?;
             (back < count && (rises || back == 0)).then_some(back)
         };
-        if self.words == Words::Dsp {
+        if !self.words.has_registers() {
             return words;
         }
         if let Some(control) = place("stream_control") {
@@ -228,8 +228,8 @@ impl Gateway {
     ) -> Vec<u32> {
         let words = self.words;
         let has_results = (RESULT_BASE..RESULTS_END).contains(&address) && rises && count > 1;
-        // Behind the window of the parallel bus they are so only while they are held.
-        if words != Words::Parallel || !has_results {
+        // On some buses they are so only while they are held.
+        if !words.must_hold() || !has_results {
             return words.read(card, address, count, rises);
         }
         let hold = at(&CARD_CONFIG, "hold");

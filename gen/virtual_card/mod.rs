@@ -16,7 +16,6 @@ mod host_end;
 mod serve;
 pub(crate) mod sets;
 pub(crate) mod settings;
-mod words;
 
 pub use faults::{Fault, FAULTS};
 pub use serve::{serve, Door, Pace, CONTROL};
@@ -28,8 +27,9 @@ use gateway::Gateway;
 use host_end::HostEnd;
 use sets::{Motion, Sets};
 use settings::{NO_DEVICE, SECOND};
-use words::Words;
 
+use crate::buses::front;
+use crate::buses::parallel::Dsp;
 use crate::config::{load_file, load_preset, preset_of, Project, Receiver, DEFAULT_PRESET};
 use crate::error::GenError;
 use crate::other_protocol::OtherFaults;
@@ -233,7 +233,7 @@ impl VirtualCard {
                 card.stream.additional_data,
             )
         });
-        let host = match Words::of(bus) {
+        let host = match front(bus).controller() {
             None => HostEnd::Uart(Uart::new(&mut bench, card.uart_bit_cycles)),
             Some(words) => HostEnd::Gateway(Gateway::new(words, &mut bench, LINK_TIMEOUT_US, sets)),
         };
@@ -261,7 +261,7 @@ impl VirtualCard {
         let is_open = wanted == Some(NO_DEVICE);
         let plugged = t_format_encoder::plug(receiver.bit_hz(), 0, is_open, config);
         bench.add_other(&PinNames::receiver(), plugged.encoder);
-        let host = HostEnd::Gateway(Gateway::new(Words::Dsp, &mut bench, LINK_TIMEOUT_US, None));
+        let host = HostEnd::Gateway(Gateway::new(&Dsp, &mut bench, LINK_TIMEOUT_US, None));
         let ports = (vec![PortOf::Other(0)], vec![plugged.faults]);
         Ok(Self::powered(bench, host, ports, jitter(config)))
     }

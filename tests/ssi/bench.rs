@@ -67,20 +67,20 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "Gray code as it came",
         PORT,
-        "filter_level ^ (before & frame[0])",
+        "filter_level ^ (bit_before & frame[0])",
         "filter_level",
     ),
     mutation(
         "the second copy begins in the code of the first",
         PORT,
-        "before_next = 1'b0;\n                ones_next = 1'b0;\n                left_next = bits;",
+        "bit_before_next = 1'b0;\n                ones_next = 1'b0;\n                left_next = bits;",
         "ones_next = 1'b0;\n                left_next = bits;",
     ),
     mutation(
         "parity of both copies together",
         PORT,
-        "before_next = 1'b0;\n                ones_next = 1'b0;\n                left_next = bits;",
-        "before_next = 1'b0;\n                left_next = bits;",
+        "bit_before_next = 1'b0;\n                ones_next = 1'b0;\n                left_next = bits;",
+        "bit_before_next = 1'b0;\n                left_next = bits;",
     ),
     mutation(
         "parity not looked at",

@@ -72,7 +72,7 @@ pub struct SsiPort {
     latches: Reg<Bit>,
     between: Reg<Bit>,
     second: Reg<Bit>,
-    before: Reg<Bit>,
+    bit_before: Reg<Bit>,
     word: Reg<Bits<48>>,
     again: Reg<Bits<48>>,
     sum: Reg<Bit>,
@@ -174,7 +174,7 @@ impl Logic for SsiPort {
                 self.latches.d.next = true;
                 self.between.d.next = false;
                 self.second.d.next = false;
-                self.before.d.next = false;
+                self.bit_before.d.next = false;
                 self.sum.d.next = false;
                 self.ones.d.next = false;
                 self.not_even.d.next = false;
@@ -228,7 +228,7 @@ impl Logic for SsiPort {
             & !self.latches.q.val()
             & !self.between.q.val();
         self.value.next =
-            self.filter.level.val() ^ (self.before.q.val() & self.frame.val().get_bit(0));
+            self.filter.level.val() ^ (self.bit_before.q.val() & self.frame.val().get_bit(0));
         if (self.state.q.val() == self.at_low.val()) & self.is_due.val() {
             self.latches.d.next = false;
             self.between.d.next = false;
@@ -246,7 +246,7 @@ impl Logic for SsiPort {
                 self.not_even.d.next = self.not_even.q.val()
                     | (self.ones.q.val() ^ self.filter.level.val() ^ self.frame.val().get_bit(4));
             } else {
-                self.before.d.next = self.value.val();
+                self.bit_before.d.next = self.value.val();
                 if self.second.q.val() {
                     self.again.d.next =
                         (self.again.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
@@ -260,7 +260,7 @@ impl Logic for SsiPort {
             if self.ends_copy.val() & !self.second.q.val() {
                 self.second.d.next = true;
                 self.between.d.next = true;
-                self.before.d.next = false;
+                self.bit_before.d.next = false;
                 self.ones.d.next = false;
                 self.left.d.next = self.bits.val();
                 self.left_too.d.next = self.bits.val();
