@@ -79,6 +79,7 @@ pub const OUTLINE: [Part; 6] = [
         pages: &[
             "architecture",
             "t-format",
+            "ssi",
             "margin",
             "simulation",
             "proofs",

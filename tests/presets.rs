@@ -9,14 +9,17 @@ use crate::tools;
 use endat_gen::config::{load_preset, Project, PRESETS};
 use endat_hdl::card::uart::BIT_CYCLES_MIN;
 use endat_hdl::card::{service_times, Card};
-use endat_hdl::config::{CardConfig, ChannelConfig, StreamStart};
+use endat_hdl::config::{CardConfig, ChannelConfig, StreamStart, DELAY_NS_PER_M};
 use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS};
 use endat_hdl::protocol::ModeCommand;
+use endat_hdl::protocols::ssi::{asked::Parity, protocol::BIT_DELAY_NS};
 use endat_hdl::protocols::t_format::protocol::RATE_TOLERANCE_PPM;
-use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
+use endat_hdl::regs::Protocol;
+use endat_sim::bench::{Bench, Link, OtherEncoder, PinNames, TFormatLink, Uart};
 use endat_sim::encoder::EncoderConfig;
 use endat_sim::line::LineConfig;
+use endat_sim::ssi::{self, SsiLink};
 use endat_sim::t_format;
 use endat_sim::{MS, NS, US};
 use rtl_design::elaborate::elaborate;
@@ -105,6 +108,28 @@ fn t_format_encoder(channel: &ChannelConfig, corner: Corner) -> t_format::Encode
     }
 }
 
+/// The slowest bits and the longest recovery time that a channel takes, or the shortest, at the end of a cable.
+fn ssi_link(channel: &ChannelConfig, corner: Corner) -> SsiLink {
+    let asked = channel.spoken.ssi().unwrap();
+    let spec = &channel.spec;
+    let config = ssi::EncoderConfig {
+        position_bits: channel.position_bits,
+        gray: asked.gray,
+        repeats: asked.twice,
+        parity: asked.has_parity().then_some(asked.parity == Parity::Odd),
+        tm: NS
+            * match corner.tm_long {
+                true => spec.recovery_max_ns,
+                false => spec.recovery_min_ns,
+            },
+        bit_delay: NS * if corner.tcal_long { BIT_DELAY_NS } else { 10 },
+        ..ssi::EncoderConfig::default()
+    };
+    // Each way.
+    let cable_ns = cable_m(channel, corner) * DELAY_NS_PER_M as f64 / 2.0;
+    SsiLink::new(config, cable_ns as u64 * NS)
+}
+
 /// The card of a preset that pushes what it receives, made once for all corners.
 fn pushing(project: &Project) -> (CardConfig, Compiled) {
     let mut card = project.card.clone();
@@ -151,9 +176,16 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize) -> Vec<String> {
     let system_hz = (card.system_hz as i64 + card.system_hz as i64 / 1_000_000 * ppm) as u64;
     let mut bench = Bench::new(engine.clone(), system_hz, links);
     for (n, channel) in card.channels.iter().enumerate() {
-        if !channel.is_endat() {
-            let link = TFormatLink::new(t_format_encoder(channel, corner(n)), 50 * NS);
-            bench.add_t_format(&PinNames::card(n), link);
+        let names = PinNames::card(n);
+        match channel.protocol() {
+            Protocol::Endat => {}
+            Protocol::TFormat => {
+                let link = TFormatLink::new(t_format_encoder(channel, corner(n)), 50 * NS);
+                bench.add_t_format(&names, link);
+            }
+            Protocol::Ssi => {
+                bench.add_other(&names, Box::new(ssi_link(channel, corner(n))));
+            }
         }
     }
     if card.line.double_edge {
@@ -201,6 +233,9 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize) -> Vec<String> {
         if !card.service.initialise && !bench.violations(link).is_empty() {
             wrong.push(format!("{n:?}: {:?}", bench.violations(link)));
         }
+    }
+    for other in bench.others().filter(|o| o.protocol() == Protocol::Ssi) {
+        wrong.extend(other.complaints());
     }
     wrong
 }

@@ -51,18 +51,18 @@ uint32_t endat_ms(uint32_t ms)
     return (ms < (UINT32_MAX / 1000u)) ? (ms * 1000u) : UINT32_MAX;
 }
 
-bool endat_is_t_format(const endat_card *card, uint32_t channel)
+uint32_t endat_protocol(const endat_card *card, uint32_t channel)
 {
-    return (channel < ENDAT_CHANNELS_MAX) && (((card->t_format_channels >> channel) & 1u) != 0u);
+    return (channel < ENDAT_CHANNELS_MAX) ? endat_protocol_of(card->protocols, channel) : ENDAT_PROTOCOL_ENDAT;
 }
 
-static endat_error needs_protocol(const endat_card *card, uint32_t channel, bool t_format)
+static endat_error needs_protocol(const endat_card *card, uint32_t channel, uint32_t protocol)
 {
     endat_error error = ENDAT_OK;
 
     if (channel >= card->channels) {
         error = ENDAT_ERROR_ARGUMENT;
-    } else if (endat_is_t_format(card, channel) != t_format) {
+    } else if (endat_protocol(card, channel) != protocol) {
         error = ENDAT_ERROR_PROTOCOL;
     } else {
         error = ENDAT_OK;
@@ -72,12 +72,12 @@ static endat_error needs_protocol(const endat_card *card, uint32_t channel, bool
 
 endat_error endat_needs_endat(const endat_card *card, uint32_t channel)
 {
-    return needs_protocol(card, channel, false);
+    return needs_protocol(card, channel, ENDAT_PROTOCOL_ENDAT);
 }
 
 endat_error endat_needs_t_format(const endat_card *card, uint32_t channel)
 {
-    return needs_protocol(card, channel, true);
+    return needs_protocol(card, channel, ENDAT_PROTOCOL_T_FORMAT);
 }
 
 endat_error endat_needs_service(const endat_card *card, uint32_t channel)
@@ -102,7 +102,7 @@ const char *endat_error_text(endat_error error)
         "the card has another major version of the register map: take the driver that came with the card",
         "the card was made from another configuration: load the bitstream that belongs to this program",
         "the card does not have this part: emit one that has it",
-        "the channel speaks the other protocol, EnDat or T-format, which does not have this: endat_card tells which",
+        "the channel speaks another protocol, which does not have this: endat_protocol() tells which",
         "not ended in time: is a trigger enabled, is the encoder plugged in?",
         "still under way: ask again",
         "the setting reads back as another one: is another master writing, is the link disturbed?",
@@ -181,7 +181,7 @@ endat_error endat_open(endat_card *card, const endat_link *link, uint32_t hash)
     card->features = ENDAT_MAP_GET(ENDAT_MAP_CARD_CAPABILITIES_FEATURES, words[2]);
     card->max_position_bits = ENDAT_MAP_GET(ENDAT_MAP_CARD_CAPABILITIES_MAX_POSITION_BITS, words[2]);
     card->more_features = ENDAT_MAP_GET(ENDAT_MAP_CARD_PROTOCOLS_FEATURES, words[5]);
-    card->t_format_channels = ENDAT_MAP_GET(ENDAT_MAP_CARD_PROTOCOLS_T_FORMAT, words[5]);
+    card->protocols = words[5];
     n = ENDAT_MAP_GET(ENDAT_MAP_CARD_CAPABILITIES_CHANNELS, words[2]);
     if (words[0] != ENDAT_MAP_ID) {
         error = ENDAT_ERROR_NO_CARD;
@@ -337,7 +337,7 @@ static endat_info info_of(uint32_t word)
 /** Place of a word in a result. */
 #define AT(name) (ENDAT_MAP_RESULT_##name##_WORD(0u) - ENDAT_MAP_RESULT_BASE_WORD)
 
-static void take_apart(const uint32_t *words, bool has_infos, bool is_t_format, endat_result *result)
+static void take_apart(const uint32_t *words, bool has_infos, uint32_t protocol, endat_result *result)
 {
     const uint32_t status = words[AT(STATUS)];
     const uint32_t high = words[AT(POSITION_HIGH)];
@@ -355,7 +355,7 @@ static void take_apart(const uint32_t *words, bool has_infos, bool is_t_format, 
     result->delay_cycles = (uint16_t)((delay_high << 10u) | delay_low);
     result->recovery_cycles = (uint16_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_AGE_RECOVERY_RECOVERY_CYCLES, age);
     result->width_bits = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_POSITION_HIGH_WIDTH, high);
-    result->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, status), is_t_format);
+    result->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, status), protocol);
     result->valid = (status & ENDAT_MAP_RESULT_STATUS_VALID_MASK) != 0u;
     result->fresh = (status & ENDAT_MAP_RESULT_STATUS_FRESH_MASK) != 0u;
     result->stale = (age & ENDAT_MAP_RESULT_AGE_RECOVERY_STALE_MASK) != 0u;
@@ -383,7 +383,7 @@ endat_error endat_read_moment(const endat_card *card, endat_moment *moment)
         error = look_at_one_moment(card, words);
         fits = true;
         for (n = 0u; (n < card->channels) && (error == ENDAT_OK); n++) {
-            take_apart(&words[ENDAT_MAP_RESULT_STRIDE_WORDS * n], has_infos, endat_is_t_format(card, n), &moment->channel[n]);
+            take_apart(&words[ENDAT_MAP_RESULT_STRIDE_WORDS * n], has_infos, endat_protocol(card, n), &moment->channel[n]);
             fits = fits && moment->channel[n].fits;
         }
     }

@@ -80,7 +80,7 @@ typedef struct {
     uint32_t more_features;      /**< ENDAT_MAP_CARD_PROTOCOLS_FEATURES_... */
     uint32_t channels;           /**< Encoder ports. */
     uint32_t max_position_bits;  /**< Widest position. */
-    uint32_t t_format_channels;  /**< Bit n: channel n speaks T-format. */
+    uint32_t protocols;          /**< The word card.protocols: endat_protocol() tells it for a channel. */
 } endat_card;
 
 /**
@@ -128,7 +128,7 @@ typedef struct {
     uint16_t age_us;          /**< Of the position; stops at 65535. */
     uint16_t delay_cycles;    /**< Tracked line delay. */
     uint16_t recovery_cycles; /**< Recovery time of the last frame. */
-    uint8_t width_bits;       /**< Of the position; 0: none yet, or T-format. */
+    uint8_t width_bits;       /**< Of the position; 0: none yet, or another protocol than EnDat. */
     uint8_t cause;            /**< Primary cause, ENDAT_CAUSE_...: endat_cause_text(). */
     bool valid;               /**< There is a good position. */
     bool fresh;               /**< The last result brought it: test this, not the cause. */
@@ -167,6 +167,9 @@ int64_t endat_signed(uint64_t position, uint32_t width_bits);
 
 /** How far it is from one position to another, the shorter way round. */
 int64_t endat_difference(uint64_t from, uint64_t to, uint32_t width_bits);
+
+/** What a channel speaks, ENDAT_PROTOCOL_...; of a channel that the card does not have EnDat. */
+uint32_t endat_protocol(const endat_card *card, uint32_t channel);
 
 /** Name of a cause. */
 const char *endat_cause_text(uint32_t cause);

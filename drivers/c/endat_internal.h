@@ -24,11 +24,11 @@ bool endat_wait_more(endat_wait *wait, uint32_t pause_us);
 /** Milliseconds as microseconds, as far as they fit. */
 uint32_t endat_ms(uint32_t ms);
 
-/** Whether this channel speaks T-format. */
-bool endat_is_t_format(const endat_card *card, uint32_t channel);
+/** What a channel speaks, ENDAT_PROTOCOL_..., as the word card.protocols says. */
+uint32_t endat_protocol_of(uint32_t word, uint32_t channel);
 
 /** The cause, ENDAT_CAUSE_..., of a code of a channel's protocol. */
-uint8_t endat_cause_of(uint32_t code, bool is_t_format);
+uint8_t endat_cause_of(uint32_t code, uint32_t protocol);
 
 /** Whether there is this EnDat channel. */
 endat_error endat_needs_endat(const endat_card *card, uint32_t channel);

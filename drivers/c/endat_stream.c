@@ -127,7 +127,7 @@ static endat_error take_apart(const endat_card *card, endat_stream *stream, enda
         endat_sample *const sample = &set->sample[n];
 
         sample->position = number(own, 6u);
-        sample->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, word), endat_is_t_format(card, set->first + n));
+        sample->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, word), endat_protocol(card, set->first + n));
         sample->valid = (word & ENDAT_MAP_RESULT_STATUS_VALID_MASK) != 0u;
         sample->fresh = (word & ENDAT_MAP_RESULT_STATUS_FRESH_MASK) != 0u;
         sample->taken = (status & TAKEN) != 0u;

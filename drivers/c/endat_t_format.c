@@ -94,7 +94,7 @@ static endat_error exchange_within(const endat_card *card, uint32_t channel, uin
     while ((error == ENDAT_OK) && is_lost) {
         error = exchange_once(card, channel, request, &answer);
         if (error == ENDAT_OK) {
-            reply->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_CAUSE, answer), true);
+            reply->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_CAUSE, answer), ENDAT_PROTOCOL_T_FORMAT);
             reply->id = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_ID, answer);
             reply->data = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_DATA, answer);
             is_lost = (reply->id != id);

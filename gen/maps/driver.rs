@@ -104,7 +104,16 @@ fn map() -> String {
 
 /// Causes as the driver tells them.
 fn write_causes(text: &mut String) {
-    text.push_str("\n/* Causes as the driver tells them, of both protocols */\n");
+    text.push_str("\n/* What a channel speaks */\n");
+    for protocol in Protocol::ALL {
+        let (name, number) = (protocol.row().word.to_ascii_uppercase(), *protocol as u8);
+        let _ = writeln!(
+            text,
+            "#define ENDAT_PROTOCOL_{name} {number}u /* {} */",
+            protocol.row().means
+        );
+    }
+    text.push_str("\n/* Causes as the driver tells them, of all protocols */\n");
     for cause in causes::ALL {
         let name = named(cause.number as u8);
         let _ = writeln!(
@@ -174,20 +183,42 @@ fn meanings(named: &[Named]) -> Vec<(u32, String)> {
         .collect()
 }
 
-/// The function that makes one list of the causes of both protocols.
-fn write_cause_of(text: &mut String) {
-    let number = |code: &Named| causes::number(code.number as u8, Protocol::TFormat);
-    let numbers: Vec<String> = (Protocol::TFormat.row().coded.iter())
-        .map(|code| format!("    ENDAT_CAUSE_{},", named(number(code))))
-        .collect();
+/// What each channel speaks, and the function that makes one list of the causes of all protocols.
+fn write_protocols(text: &mut String) {
+    let others = || Protocol::ALL.iter().filter(|p| **p != Protocol::Endat);
+    for protocol in others() {
+        let number = |code: &Named| causes::number(code.number as u8, *protocol);
+        let numbers = protocol.row().coded.iter();
+        let numbers: Vec<String> = numbers
+            .map(|code| format!("    ENDAT_CAUSE_{},", named(number(code))))
+            .collect();
+        let _ = write!(
+            text,
+            "\n/* Causes of {}, each at its code */\nstatic const uint8_t {}_causes[] = {{\n{}\n}};\n",
+            protocol.name(),
+            protocol.row().word,
+            numbers.join("\n")
+        );
+    }
+    let mut cases = String::new();
+    let mut speaks = String::new();
+    for protocol in others() {
+        let word = protocol.row().word;
+        let name = word.to_ascii_uppercase();
+        let _ = write!(
+            cases,
+            "    if (protocol == ENDAT_PROTOCOL_{name}) {{\n        cause = (code < (uint32_t)sizeof {word}_causes) ? {word}_causes[code] : ({}u + code);\n    }}\n",
+            u32::from(causes::CODES) * *protocol as u32
+        );
+        let _ = write!(
+            speaks,
+            "    if (((ENDAT_MAP_GET(ENDAT_MAP_CARD_PROTOCOLS_{name}, word) >> channel) & 1u) != 0u) {{\n        protocol = ENDAT_PROTOCOL_{name};\n    }}\n",
+        );
+    }
     let _ = write!(
         text,
-        "\n/* Causes of T-format, each at its code */\nstatic const uint8_t t_format_causes[] = {{\n{}\n}};\n\n\
-         uint8_t endat_cause_of(uint32_t code, bool is_t_format)\n{{\n    uint32_t cause = code;\n\n    \
-         if (is_t_format) {{\n        cause = (code < (uint32_t)sizeof t_format_causes) ? t_format_causes[code] : ({}u + code);\n    }}\n    \
-         return (uint8_t)cause;\n}}\n",
-        numbers.join("\n"),
-        causes::CODES
+        "\nuint8_t endat_cause_of(uint32_t code, uint32_t protocol)\n{{\n    uint32_t cause = code;\n\n{cases}    return (uint8_t)cause;\n}}\n\n\
+         uint32_t endat_protocol_of(uint32_t word, uint32_t channel)\n{{\n    uint32_t protocol = ENDAT_PROTOCOL_ENDAT;\n\n{speaks}    return protocol;\n}}\n",
     );
 }
 
@@ -211,7 +242,7 @@ fn texts() -> String {
         "/**\n * @file endat_texts.c\n * What the numbers of a card say, and what to do about them.\n *\n * {ORIGIN}\n */\n\
          #include \"endat.h\"\n#include \"endat_internal.h\"\n#include <stddef.h>\n"
     );
-    write_cause_of(&mut text);
+    write_protocols(&mut text);
     let advice = |which: usize| -> Vec<(u32, String)> {
         let of = |cause: &Named| {
             let advice = causes::advice(cause.name).map_or("", |both| both[which]);

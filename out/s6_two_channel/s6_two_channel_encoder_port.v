@@ -4,13 +4,13 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Encoder port: a channel, and its service where the configuration has one; or a T-format port in their place.
+// Encoder port: a channel, and its service where the configuration has one; or the port of another protocol in their place.
 //
 // trigger, configuration --> ServiceChannel --> Channel --> EnDat     trigger, configuration --> TFormatPort --> T-format
 //                               ^   |             |                                                 ^  |
 // host --- Service, RAM <-- io -+---+             +--> results        host --- words ---------------+  +--> results
 //
-// What only the other protocol has reads 0; EnDat's clock rests HIGH.
+// What only another protocol has reads 0; EnDat's clock rests HIGH.
 //
 // For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
 module s6_two_channel_encoder_port (

@@ -108,11 +108,14 @@
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_MASK 0x00000100u
 /* features: Parts that have no place in capabilities.features */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SHIFT 16u
-#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_MASK 0x00FF0000u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured a second time */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE 0x2u /* results for a second controller, over an SPI that can only be read */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SECOND_RECEIVER 0x4u /* second receiver in lockstep */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_ERROR_TEST 0x8u /* forced errors on a schedule */
+/* ssi: SSI: bit n for channel n */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_SSI_SHIFT 24u
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_SSI_MASK 0xFF000000u
 
 /* ro: Triggers since reset; stands still with the results (see hold). */
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_WORD 0x008u

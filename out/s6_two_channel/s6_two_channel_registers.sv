@@ -104,11 +104,14 @@ package s6_two_channel_registers;
     localparam logic [31:0] CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_MASK = 32'h00000100;
     // features: Parts that have no place in capabilities.features
     localparam logic [31:0] CARD_PROTOCOLS_FEATURES_SHIFT = 32'd16;
-    localparam logic [31:0] CARD_PROTOCOLS_FEATURES_MASK = 32'hFFFF0000;
+    localparam logic [31:0] CARD_PROTOCOLS_FEATURES_MASK = 32'h00FF0000;
     localparam logic [31:0] CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER = 32'h1; // recovery time measured a second time
     localparam logic [31:0] CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE = 32'h2; // results for a second controller, over an SPI that can only be read
     localparam logic [31:0] CARD_PROTOCOLS_FEATURES_SECOND_RECEIVER = 32'h4; // second receiver in lockstep
     localparam logic [31:0] CARD_PROTOCOLS_FEATURES_ERROR_TEST = 32'h8; // forced errors on a schedule
+    // ssi: SSI: bit n for channel n
+    localparam logic [31:0] CARD_PROTOCOLS_SSI_SHIFT = 32'd24;
+    localparam logic [31:0] CARD_PROTOCOLS_SSI_MASK = 32'hFF000000;
 
     // ro: Triggers since reset; stands still with the results (see hold).
     localparam logic [31:0] CARD_TRIGGER_COUNT_WORD = 32'h008;

@@ -106,11 +106,14 @@ package s6_two_channel_registers is
     constant CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_MASK : word_t := x"00000100";
     -- features: Parts that have no place in capabilities.features
     constant CARD_PROTOCOLS_FEATURES_SHIFT : natural := 16;
-    constant CARD_PROTOCOLS_FEATURES_MASK : word_t := x"FFFF0000";
+    constant CARD_PROTOCOLS_FEATURES_MASK : word_t := x"00FF0000";
     constant CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER : word_t := x"00000001"; -- recovery time measured a second time
     constant CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE : word_t := x"00000002"; -- results for a second controller, over an SPI that can only be read
     constant CARD_PROTOCOLS_FEATURES_SECOND_RECEIVER : word_t := x"00000004"; -- second receiver in lockstep
     constant CARD_PROTOCOLS_FEATURES_ERROR_TEST : word_t := x"00000008"; -- forced errors on a schedule
+    -- ssi: SSI: bit n for channel n
+    constant CARD_PROTOCOLS_SSI_SHIFT : natural := 24;
+    constant CARD_PROTOCOLS_SSI_MASK : word_t := x"FF000000";
 
     -- ro: Triggers since reset; stands still with the results (see hold).
     constant CARD_TRIGGER_COUNT_WORD : natural := 16#008#;

@@ -189,7 +189,7 @@ static void open_card(const char *kind, uint32_t hash)
     CHECK(error == ENDAT_ERROR_CONFIGURATION && card.channels == 0, "%s", endat_error_text(error));
     error = endat_open(&card, &link, hash);
     CHECK(error == ENDAT_OK, "%s", endat_error_text(error));
-    CHECK(card.channels == 2 && (card.system_hz == 16000000 || card.t_format_channels != 0), "%u channels", (unsigned)card.channels);
+    CHECK(card.channels == 2 && (card.system_hz == 16000000 || endat_protocol(&card, 0) != ENDAT_PROTOCOL_ENDAT || endat_protocol(&card, 1) != ENDAT_PROTOCOL_ENDAT), "%u channels", (unsigned)card.channels);
     error = endat_try_link(&card);
     CHECK(error == ENDAT_OK, "%s", endat_error_text(error));
 }

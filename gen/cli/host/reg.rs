@@ -7,7 +7,7 @@ use crate::number::number;
 use clap::{Args, Subcommand};
 use endat_host::registers::{Access, Field, Named, Place, Values};
 use endat_host::HostError;
-use endat_regs::BLOCKS;
+use endat_regs::{Protocol, BLOCKS};
 use serde_json::{json, Value};
 use std::fmt::Write;
 
@@ -181,12 +181,12 @@ fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, 
 }
 
 /// A number, the name of one of the field's values, or names of some of its bits.
-fn value_of(place: &Place, text: &str, force: bool) -> Result<u32, GenError> {
+fn value_of(place: &Place, text: &str, force: bool, protocol: Protocol) -> Result<u32, GenError> {
     let by_name = |names: &[Named], text: &str| {
         let found = names.iter().find(|n| n.name == text);
         found.map(|n| n.number)
     };
-    let named = match place.field.map(|f| f.values) {
+    let named = match place.field.map(|f| f.values_in(protocol)) {
         Some(Values::Codes(codes)) => by_name(codes, text),
         Some(Values::Bits(bits)) => text.split(',').try_fold(0, |all, one| {
             by_name(bits, one.trim()).map(|bit| all | 1 << bit)
@@ -197,7 +197,7 @@ fn value_of(place: &Place, text: &str, force: bool) -> Result<u32, GenError> {
         return Ok(value);
     }
     // Where the map has limits, they are what is told of every number outside, whether it fits the bits or not.
-    let limited = |f: &&Field| f.is_limited() && !force;
+    let limited = |f: &&Field| !f.ranges(protocol).is_empty() && !force;
     let field = place.field.filter(|f| !limited(f));
     let most = field.map_or(u32::MAX, |f| f.mask() >> f.lsb);
     number("value", text, 0..=most.into()).map(|n| n as u32)
@@ -226,7 +226,8 @@ fn write(
     as_data: bool,
 ) -> Result<Outcome, GenError> {
     let place = card.place(name).map_err(told)?;
-    let value = value_of(&place, text, force)?;
+    let protocol = card.identity().protocol_of(&place);
+    let value = value_of(&place, text, force, protocol)?;
     if !force {
         card.permits(&place, value)
             .map_err(|e| GenError::input(format!("{e}; --force writes it all the same")))?;

@@ -3,7 +3,9 @@
 use super::questions::{form_of, has_board, has_uart, Answers, Of, NOTHING, QUESTIONS};
 use crate::config::base::takes;
 use crate::config::grouped;
-use crate::config::keys::{self, Key, Kind, Usual, CHANNELS, COMMON, ENDAT_FORM, KEYS, TABLES};
+use crate::config::keys::{
+    self, Key, Kind, Usual, CARD_FORM, CHANNELS, COMMON, ENDAT_FORM, KEYS, TABLES,
+};
 use crate::error::GenError;
 use crate::form::key::head;
 use crate::json_schema::plain;
@@ -105,8 +107,11 @@ fn table(text: &mut String, answers: &Answers, table: &str, forms: u8, is_told: 
         .iter()
         .filter(|key| key.tables.contains(&table) && key.forms & forms != 0);
     // What all channels have alike is said for all of them.
-    let is_for_all =
-        |key: &Key| table == CHANNELS && forms == ENDAT_FORM && key.tables.contains(&COMMON);
+    // Of another protocol, what it has together with EnDat; what every protocol has, each may have with another default.
+    let is_for_all = |key: &Key| {
+        let is_told = forms != ENDAT_FORM && key.forms != CARD_FORM;
+        table == CHANNELS && key.tables.contains(&COMMON) && !is_told
+    };
     let keys = keys.copied().filter(|key| !is_for_all(key));
     let bus = answers.get("bus").and_then(|name| HostBus::from_name(name));
     let is_of_bus = |key: &&Key| bus.is_none_or(|bus| takes(bus, key));
