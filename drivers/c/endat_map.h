@@ -110,11 +110,14 @@
 #define ENDAT_MAP_CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_MASK 0x00000100u
 /* features: Parts that have no place in capabilities.features */
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_SHIFT 16u
-#define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
+#define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_MASK 0x00FF0000u
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured a second time */
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE 0x2u /* results for a second controller, over an SPI that can only be read */
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_SECOND_RECEIVER 0x4u /* second receiver in lockstep */
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_ERROR_TEST 0x8u /* forced errors on a schedule */
+/* ssi: SSI: bit n for channel n */
+#define ENDAT_MAP_CARD_PROTOCOLS_SSI_SHIFT 24u
+#define ENDAT_MAP_CARD_PROTOCOLS_SSI_MASK 0xFF000000u
 
 /* ro: Triggers since reset; stands still with the results (see hold). */
 #define ENDAT_MAP_CARD_TRIGGER_COUNT_WORD 0x008u
@@ -412,7 +415,7 @@
 
 /* ---- t_format -------------------------------------------------------------- */
 
-/* Requests to a T-format encoder beside its triggers, and the fields of its replies; 0 on a channel that speaks EnDat. */
+/* Requests to a T-format encoder beside its triggers, and the fields of its replies; 0 on a channel that speaks another protocol. */
 #define ENDAT_MAP_T_FORMAT_BASE_WORD 0x0C0u
 #define ENDAT_MAP_T_FORMAT_BASE_BYTE 0x0300u
 #define ENDAT_MAP_T_FORMAT_STRIDE_WORDS 8u
@@ -575,6 +578,12 @@
 #define ENDAT_MAP_CONFIG_FRAME_COMMAND_MASK 0x3F000000u
 #define ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION 7u /* 000111 send position (EnDat 2.1) */
 #define ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional data (EnDat 2.2) */
+/* command: on an SSI channel */
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SSI_GRAY 0x1u /* in Gray code */
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SSI_TWICE 0x2u /* each position twice, compared */
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SSI_CLOCKED 0x4u /* a frame goes out; always 1 */
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SSI_PARITY 0x8u /* a parity bit behind the position */
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SSI_ODD 0x10u /* which is odd */
 /* ignore_register: 1: trigger_now is not */
 #define ENDAT_MAP_CONFIG_FRAME_IGNORE_REGISTER_SHIFT 30u
 #define ENDAT_MAP_CONFIG_FRAME_IGNORE_REGISTER_MASK 0x40000000u
@@ -619,9 +628,17 @@
 #define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_T_FORMAT_MIN 8u
 #define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_T_FORMAT_MAX 127u
 
+/* What period_cycles takes on an SSI channel */
+#define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_SSI_MIN 4u
+#define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_SSI_MAX 2047u
+
 /* What position_bits takes */
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MIN 1u
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MAX 48u
+
+/* What position_bits takes on an SSI channel */
+#define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_SSI_MIN 1u
+#define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_SSI_MAX 48u
 
 /* What start_timeout_us takes on a T-format channel */
 #define ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_T_FORMAT_MIN 1u
@@ -681,6 +698,16 @@
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_MULTI_TURN_ALARM 14u /* multi-turn or battery alarm */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_UPSET 15u /* stored data upset */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_TRIGGER_OVERRUN 16u /* trigger overrun */
+/* cause: on an SSI channel */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_NONE 0u /* none */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_UNKNOWN_FRAME 1u /* unknown kind of frame */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_DATA_NOT_HIGH 2u /* data not high before the frame */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_DATA_NOT_LOW_AFTER 3u /* data not low after the last bit */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_POSITION_PARITY 4u /* parity of the position */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_COPIES_DIFFER 5u /* the two copies differ */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_UPSET 6u /* stored data upset */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_TRIGGER_OVERRUN 7u /* trigger overrun */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_RECOVERY_TOO_LONG 8u /* recovery time too long */
 /* valid: There is a good position */
 #define ENDAT_MAP_RESULT_STATUS_VALID_SHIFT 22u
 #define ENDAT_MAP_RESULT_STATUS_VALID_MASK 0x00400000u
@@ -703,6 +730,7 @@
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_MULTI_TURN_ALARM 0x2u /* multi-turn or battery alarm */
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_UPSET 0x4u /* stored data upset */
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_TRIGGER_OVERRUN 0x8u /* trigger overrun */
+/* line: on an SSI channel */
 
 /* ro: Last good position, bits 31..0. */
 #define ENDAT_MAP_RESULT_POSITION_LOW_WORD(channel) (0x181u + 8u * (channel))
@@ -774,6 +802,15 @@
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_REQUEST_PARITY 0x200u /* encoder saw a parity error */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_REQUEST_DELIMITER 0x400u /* encoder saw a delimiter error */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_EEPROM_BUSY 0x800u /* EEPROM busy */
+/* flags: on an SSI channel */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_UNKNOWN_FRAME 0x1u /* unknown kind of frame */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_DATA_NOT_HIGH 0x2u /* data not high before the frame */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_DATA_NOT_LOW_AFTER 0x4u /* data not low after the last bit */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_POSITION_PARITY 0x8u /* parity of the position */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_COPIES_DIFFER 0x10u /* the two copies differ */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_UPSET 0x20u /* stored data upset */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_TRIGGER_OVERRUN 0x40u /* trigger overrun */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_RECOVERY_TOO_LONG 0x80u /* recovery time too long */
 
 /* ro: Age and recovery time. */
 #define ENDAT_MAP_RESULT_AGE_RECOVERY_WORD(channel) (0x185u + 8u * (channel))
@@ -2072,7 +2109,12 @@
 #define ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MIN 0u
 #define ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MAX 8u
 
-/* Causes as the driver tells them, of both protocols */
+/* What a channel speaks */
+#define ENDAT_PROTOCOL_ENDAT 0u /* EnDat 2.1/2.2 */
+#define ENDAT_PROTOCOL_T_FORMAT 1u /* T-format */
+#define ENDAT_PROTOCOL_SSI 2u /* SSI */
+
+/* Causes as the driver tells them, of all protocols */
 #define ENDAT_CAUSE_NONE 0u /* none */
 #define ENDAT_CAUSE_DATA_NOT_LOW 1u /* data not low before start */
 #define ENDAT_CAUSE_NO_START_BIT 2u /* no start bit */
@@ -2105,5 +2147,11 @@
 #define ENDAT_CAUSE_EEPROM_BUSY 44u /* EEPROM busy */
 #define ENDAT_CAUSE_COUNTING_ERROR 45u /* counting error */
 #define ENDAT_CAUSE_MULTI_TURN_ALARM 46u /* multi-turn or battery alarm */
+#define ENDAT_CAUSE_UNKNOWN_FRAME 65u /* unknown kind of frame */
+#define ENDAT_CAUSE_DATA_NOT_HIGH 66u /* data not high before the frame */
+#define ENDAT_CAUSE_DATA_NOT_LOW_AFTER 67u /* data not low after the last bit */
+#define ENDAT_CAUSE_POSITION_PARITY 68u /* parity of the position */
+#define ENDAT_CAUSE_COPIES_DIFFER 69u /* the two copies differ */
+#define ENDAT_CAUSE_RECOVERY_TOO_LONG 72u /* recovery time too long */
 
 #endif

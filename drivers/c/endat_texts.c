@@ -29,14 +29,43 @@ static const uint8_t t_format_causes[] = {
     ENDAT_CAUSE_TRIGGER_OVERRUN,
 };
 
-uint8_t endat_cause_of(uint32_t code, bool is_t_format)
+/* Causes of SSI, each at its code */
+static const uint8_t ssi_causes[] = {
+    ENDAT_CAUSE_NONE,
+    ENDAT_CAUSE_UNKNOWN_FRAME,
+    ENDAT_CAUSE_DATA_NOT_HIGH,
+    ENDAT_CAUSE_DATA_NOT_LOW_AFTER,
+    ENDAT_CAUSE_POSITION_PARITY,
+    ENDAT_CAUSE_COPIES_DIFFER,
+    ENDAT_CAUSE_UPSET,
+    ENDAT_CAUSE_TRIGGER_OVERRUN,
+    ENDAT_CAUSE_RECOVERY_TOO_LONG,
+};
+
+uint8_t endat_cause_of(uint32_t code, uint32_t protocol)
 {
     uint32_t cause = code;
 
-    if (is_t_format) {
+    if (protocol == ENDAT_PROTOCOL_T_FORMAT) {
         cause = (code < (uint32_t)sizeof t_format_causes) ? t_format_causes[code] : (32u + code);
     }
+    if (protocol == ENDAT_PROTOCOL_SSI) {
+        cause = (code < (uint32_t)sizeof ssi_causes) ? ssi_causes[code] : (64u + code);
+    }
     return (uint8_t)cause;
+}
+
+uint32_t endat_protocol_of(uint32_t word, uint32_t channel)
+{
+    uint32_t protocol = ENDAT_PROTOCOL_ENDAT;
+
+    if (((ENDAT_MAP_GET(ENDAT_MAP_CARD_PROTOCOLS_T_FORMAT, word) >> channel) & 1u) != 0u) {
+        protocol = ENDAT_PROTOCOL_T_FORMAT;
+    }
+    if (((ENDAT_MAP_GET(ENDAT_MAP_CARD_PROTOCOLS_SSI, word) >> channel) & 1u) != 0u) {
+        protocol = ENDAT_PROTOCOL_SSI;
+    }
+    return protocol;
 }
 
 /* Causes of a result */
@@ -88,6 +117,32 @@ static const char *const causes[] = {
     "EEPROM busy",
     "counting error",
     "multi-turn or battery alarm",
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    "unknown kind of frame",
+    "data not high before the frame",
+    "data not low after the last bit",
+    "parity of the position",
+    "the two copies differ",
+    NULL,
+    NULL,
+    "recovery time too long",
 };
 
 const char *endat_cause_text(uint32_t number)
@@ -149,6 +204,32 @@ static const char *const meanings[] = {
     "The encoder's EEPROM is busy with the last byte; the data mean nothing.",
     "The encoder reports a counting error; the position is taken.",
     "The encoder reports a multi-turn, overflow or battery alarm; the position is taken, and its turns may be wrong.",
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    "config<n>.frame.command of an SSI channel has no bit 2, or what a host wrote to the configuration was disturbed; nothing was clocked.",
+    "The DATA line of an SSI encoder was LOW when a frame was to begin: it still held the last position, has no supply, or the pair is swapped or shorted. Nothing was clocked.",
+    "DATA was HIGH behind the last bit, or between two copies: nothing is plugged in, the encoder has more bits than configured, or its bits come too late for this clock.",
+    "The parity bit behind the position does not fit it: a bit was disturbed, or the encoder has no parity, or the other one.",
+    "The position came twice, and not the same: a bit was disturbed, or the encoder takes a new position for each copy.",
+    NULL,
+    NULL,
+    "Behind the frame before, DATA was still LOW after recovery_max_ns: a trigger at the highest rate would meet the encoder there. The position is good.",
 };
 
 const char *endat_cause_meaning(uint32_t number)
@@ -210,6 +291,32 @@ static const char *const remedies[] = {
     "Send the request again some milliseconds later.",
     "Turn the power off and on, or send request 7 ten times in a row.",
     "Look at t_format<n>.fields.alarm and at the battery; then send request 7 or 12 ten times in a row.",
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    "Write the configuration again: 4 to config<n>.frame.command, 5 for Gray code, 6 and 7 for the same twice.",
+    "Look at plug, supply and pair; trigger more slowly, and compare recovery_max_ns with the encoder's monoflop time.",
+    "Look at plug and supply; compare position_bits with the data sheet; lower clock_hz.",
+    "Look at termination and shield; lower clock_hz; compare parity with the data sheet.",
+    "Look at termination and shield; lower clock_hz; leave twice out if the encoder does not repeat.",
+    NULL,
+    NULL,
+    "Raise recovery_max_ns to the encoder's monoflop time.",
 };
 
 const char *endat_cause_remedy(uint32_t number)

@@ -3,6 +3,7 @@
 mod in_rust;
 mod page;
 mod rig;
+mod ssi;
 mod t_format;
 mod world;
 
