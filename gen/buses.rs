@@ -13,15 +13,15 @@ use crate::front::Front;
 use endat_hdl::card::bus::HostBus;
 
 /// What there is to know of a bus.
-pub(crate) fn front(bus: HostBus) -> &'static dyn Front {
+pub(crate) fn front(bus: HostBus) -> &'static Front {
     match bus {
-        HostBus::Uart => &uart::Uart,
-        HostBus::Apb => &apb::Apb,
-        HostBus::Wishbone => &wishbone::Wishbone,
-        HostBus::AxiLite => &axi_lite::AxiLite,
-        HostBus::AhbLite => &ahb_lite::AhbLite,
-        HostBus::Spi => &spi::Spi,
-        HostBus::Parallel => &parallel::Parallel,
-        HostBus::Bare => &bare::Bare,
+        HostBus::Uart => &uart::FRONT,
+        HostBus::Apb => &apb::FRONT,
+        HostBus::Wishbone => &wishbone::FRONT,
+        HostBus::AxiLite => &axi_lite::FRONT,
+        HostBus::AhbLite => &ahb_lite::FRONT,
+        HostBus::Spi => &spi::FRONT,
+        HostBus::Parallel => &parallel::FRONT,
+        HostBus::Bare => &bare::FRONT,
     }
 }

@@ -11,31 +11,19 @@ use rust_hdl::prelude::Block;
 use serde::Serialize;
 
 /// A bus, and the card behind it.
-pub trait Front: Sync {
-    /// The card with this front, with these waits of its services, and with this limit on pauses within a command over the UART.
-    fn design(
-        &self,
-        card: &CardConfig,
-        name: &str,
-        times: &ServiceTimes,
-        link_timeout_us: u64,
-    ) -> Result<Design, GenError>;
-
+pub struct Front {
+    /// The card with this front.
+    pub design: DesignOf,
     /// The host of the emitted bench; none for a port without registers.
-    fn bench_host(&self) -> Option<BenchHost> {
-        None
-    }
-
+    pub bench_host: Option<BenchHost>,
     /// A controller at its pins; none where a host has bytes of its own, and where there are no registers.
-    fn controller(&self) -> Option<&'static dyn Controller> {
-        None
-    }
-
+    pub controller: Option<&'static dyn Controller>,
     /// The bus as tools know it that connect by interface; none where no tool does.
-    fn interface(&self) -> Option<&'static BusInterface> {
-        None
-    }
+    pub interface: Option<BusInterface>,
 }
+
+/// A card by its name, with these waits of its services, and with this limit on pauses within a command over the UART, in microseconds.
+pub type DesignOf = fn(&CardConfig, &str, &ServiceTimes, u64) -> Result<Design, GenError>;
 
 /// A block as a design.
 pub fn design_of(mut card: impl Block, name: &str) -> Result<Design, GenError> {

@@ -107,7 +107,7 @@ pub fn design_with(
     link_timeout_us: u64,
 ) -> Result<Design, GenError> {
     let (card, name) = (&project.card, &project.name);
-    let design = front(project.bus).design(card, name, times, link_timeout_us)?;
+    let design = (front(project.bus).design)(card, name, times, link_timeout_us)?;
     Ok(Design {
         has_initial_values: card.initial_values,
         ..design

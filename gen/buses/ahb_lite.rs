@@ -1,16 +1,12 @@
 //! AMBA 3 AHB-Lite.
 
-use crate::error::GenError;
 use crate::front::{comes, design_of, set_all, BenchHost, BusInterface, Controller, Front, Pins};
 use endat_hdl::card::bus::ahb_lite::AhbLiteCard;
-use endat_hdl::config::CardConfig;
-use endat_hdl::endat::service::program::ServiceTimes;
-use rtl_design::elaborate::Design;
 
-/// See the module.
-pub(super) struct AhbLite;
+/// A controller.
+struct AhbLite;
 
-const AHB_LITE: &[(&str, &str)] = &[
+const PORTS: &[(&str, &str)] = &[
     ("s_ahb_hsel", "hsel"),
     ("s_ahb_htrans", "{hsel, 1'b0}"),
     ("s_ahb_hwrite", "hwrite"),
@@ -24,44 +20,26 @@ const AHB_LITE: &[(&str, &str)] = &[
     ("s_ahb_hresp", "hresp"),
 ];
 
-const INTERFACE: BusInterface = BusInterface {
-    name: "s_ahb",
-    vivado: "xilinx.com:interface:ahblite",
-    ipxact: Some(["amba.com", "AMBA3", "AHBLite", "r2p0_0"]),
-    platform_designer: "",
-    unused: &[],
-    logical: &[],
-    address: Some(("haddr", 1)),
-    litex: None,
+/// What there is to know of it.
+pub(super) const FRONT: Front = Front {
+    design: |card, name, times, _| design_of(AhbLiteCard::with_times(card, times), name),
+    bench_host: Some(BenchHost {
+        text: include_str!("../templates/bench_host/ahb_lite.v"),
+        moves_words: true,
+        connections: PORTS,
+    }),
+    controller: Some(&AhbLite),
+    interface: Some(BusInterface {
+        name: "s_ahb",
+        vivado: "xilinx.com:interface:ahblite",
+        ipxact: Some(["amba.com", "AMBA3", "AHBLite", "r2p0_0"]),
+        platform_designer: "",
+        unused: &[],
+        logical: &[],
+        address: Some(("haddr", 1)),
+        litex: None,
+    }),
 };
-
-impl Front for AhbLite {
-    fn design(
-        &self,
-        card: &CardConfig,
-        name: &str,
-        times: &ServiceTimes,
-        _: u64,
-    ) -> Result<Design, GenError> {
-        design_of(AhbLiteCard::with_times(card, times), name)
-    }
-
-    fn bench_host(&self) -> Option<BenchHost> {
-        Some(BenchHost {
-            text: include_str!("../templates/bench_host/ahb_lite.v"),
-            moves_words: true,
-            connections: AHB_LITE,
-        })
-    }
-
-    fn controller(&self) -> Option<&'static dyn Controller> {
-        Some(&AhbLite)
-    }
-
-    fn interface(&self) -> Option<&'static BusInterface> {
-        Some(&INTERFACE)
-    }
-}
 
 impl Controller for AhbLite {
     fn rest(&self, card: &mut Pins) {

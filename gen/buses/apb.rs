@@ -1,16 +1,12 @@
 //! AMBA 3 APB.
 
-use crate::error::GenError;
 use crate::front::{comes, design_of, set_all, BenchHost, BusInterface, Controller, Front, Pins};
 use endat_hdl::card::bus::apb::ApbCard;
-use endat_hdl::config::CardConfig;
-use endat_hdl::endat::service::program::ServiceTimes;
-use rtl_design::elaborate::Design;
 
-/// See the module.
-pub(super) struct Apb;
+/// A controller.
+struct Apb;
 
-const APB: &[(&str, &str)] = &[
+const PORTS: &[(&str, &str)] = &[
     ("s_apb_psel", "psel"),
     ("s_apb_penable", "penable"),
     ("s_apb_pwrite", "pwrite"),
@@ -21,44 +17,26 @@ const APB: &[(&str, &str)] = &[
     ("s_apb_pslverr", "pslverr"),
 ];
 
-const INTERFACE: BusInterface = BusInterface {
-    name: "s_apb",
-    vivado: "xilinx.com:interface:apb",
-    ipxact: Some(["amba.com", "AMBA3", "APB", "r1p0_0"]),
-    platform_designer: "apb",
-    unused: &[],
-    logical: &[],
-    address: Some(("paddr", 1)),
-    litex: None,
+/// What there is to know of it.
+pub(super) const FRONT: Front = Front {
+    design: |card, name, times, _| design_of(ApbCard::with_times(card, times), name),
+    bench_host: Some(BenchHost {
+        text: include_str!("../templates/bench_host/apb.v"),
+        moves_words: true,
+        connections: PORTS,
+    }),
+    controller: Some(&Apb),
+    interface: Some(BusInterface {
+        name: "s_apb",
+        vivado: "xilinx.com:interface:apb",
+        ipxact: Some(["amba.com", "AMBA3", "APB", "r1p0_0"]),
+        platform_designer: "apb",
+        unused: &[],
+        logical: &[],
+        address: Some(("paddr", 1)),
+        litex: None,
+    }),
 };
-
-impl Front for Apb {
-    fn design(
-        &self,
-        card: &CardConfig,
-        name: &str,
-        times: &ServiceTimes,
-        _: u64,
-    ) -> Result<Design, GenError> {
-        design_of(ApbCard::with_times(card, times), name)
-    }
-
-    fn bench_host(&self) -> Option<BenchHost> {
-        Some(BenchHost {
-            text: include_str!("../templates/bench_host/apb.v"),
-            moves_words: true,
-            connections: APB,
-        })
-    }
-
-    fn controller(&self) -> Option<&'static dyn Controller> {
-        Some(&Apb)
-    }
-
-    fn interface(&self) -> Option<&'static BusInterface> {
-        Some(&INTERFACE)
-    }
-}
 
 impl Controller for Apb {
     fn read_word(&self, card: &mut Pins, address: u16) -> Option<u32> {

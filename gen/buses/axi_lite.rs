@@ -1,18 +1,14 @@
 //! AXI4-Lite.
 
-use crate::error::GenError;
 use crate::front::{
     comes, design_of, set_all, BenchHost, BusInterface, Controller, Front, LitexBus, Pins, Unused,
 };
 use endat_hdl::card::bus::axi_lite::AxiLiteCard;
-use endat_hdl::config::CardConfig;
-use endat_hdl::endat::service::program::ServiceTimes;
-use rtl_design::elaborate::Design;
 
-/// See the module.
-pub(super) struct AxiLite;
+/// A controller.
+struct AxiLite;
 
-const AXI_LITE: &[(&str, &str)] = &[
+const PORTS: &[(&str, &str)] = &[
     ("s_axi_awaddr", "awaddr"),
     ("s_axi_awvalid", "awvalid"),
     ("s_axi_awready", "awready"),
@@ -46,49 +42,31 @@ const PROTECTION: &[Unused] = &[
     },
 ];
 
-const INTERFACE: BusInterface = BusInterface {
-    name: "s_axi",
-    vivado: "xilinx.com:interface:aximm",
-    ipxact: Some(["amba.com", "AMBA4", "AXI4-Lite", "r0p0_0"]),
-    platform_designer: "axi4lite",
-    unused: PROTECTION,
-    logical: &[],
-    address: Some(("awaddr", 1)),
-    litex: Some(LitexBus {
-        module: "axi",
-        // LiteX joins interfaces of the system's width only.
-        class: "axi.AXILiteInterface(data_width=32, address_width=32)",
-        field,
+/// What there is to know of it.
+pub(super) const FRONT: Front = Front {
+    design: |card, name, times, _| design_of(AxiLiteCard::with_times(card, times), name),
+    bench_host: Some(BenchHost {
+        text: include_str!("../templates/bench_host/axi_lite.v"),
+        moves_words: true,
+        connections: PORTS,
+    }),
+    controller: Some(&AxiLite),
+    interface: Some(BusInterface {
+        name: "s_axi",
+        vivado: "xilinx.com:interface:aximm",
+        ipxact: Some(["amba.com", "AMBA4", "AXI4-Lite", "r0p0_0"]),
+        platform_designer: "axi4lite",
+        unused: PROTECTION,
+        logical: &[],
+        address: Some(("awaddr", 1)),
+        litex: Some(LitexBus {
+            module: "axi",
+            // LiteX joins interfaces of the system's width only.
+            class: "axi.AXILiteInterface(data_width=32, address_width=32)",
+            field,
+        }),
     }),
 };
-
-impl Front for AxiLite {
-    fn design(
-        &self,
-        card: &CardConfig,
-        name: &str,
-        times: &ServiceTimes,
-        _: u64,
-    ) -> Result<Design, GenError> {
-        design_of(AxiLiteCard::with_times(card, times), name)
-    }
-
-    fn bench_host(&self) -> Option<BenchHost> {
-        Some(BenchHost {
-            text: include_str!("../templates/bench_host/axi_lite.v"),
-            moves_words: true,
-            connections: AXI_LITE,
-        })
-    }
-
-    fn controller(&self) -> Option<&'static dyn Controller> {
-        Some(&AxiLite)
-    }
-
-    fn interface(&self) -> Option<&'static BusInterface> {
-        Some(&INTERFACE)
-    }
-}
 
 impl Controller for AxiLite {
     fn read_word(&self, card: &mut Pins, address: u16) -> Option<u32> {

@@ -1,14 +1,10 @@
 //! Asynchronous bus with eight registers of 16 bits; a receiver for a signal processor has the same pins.
 
-use crate::error::GenError;
 use crate::front::{design_of, set_all, BenchHost, Controller, Front, Pins, ACCESS_CYCLES_MAX};
 use endat_hdl::card::bus::parallel::ParallelCard;
-use endat_hdl::config::CardConfig;
-use endat_hdl::endat::service::program::ServiceTimes;
-use rtl_design::elaborate::Design;
 
-/// See the module.
-pub(super) struct Parallel;
+/// A controller.
+struct Parallel;
 
 /// From an address to its data, in system clock cycles; a strobe takes as long.
 const STROBE_CYCLES: u64 = 4;
@@ -18,7 +14,7 @@ const WINDOW_LOW: u32 = 6;
 const WINDOW_HIGH: u32 = 7;
 const WINDOW_WRITES: u32 = 1 << 14;
 const WINDOW_BUSY: u32 = 1 << 15;
-const PARALLEL: &[(&str, &str)] = &[
+const PORTS: &[(&str, &str)] = &[
     ("bus_cs_n_i", "bus_cs_n"),
     ("bus_rd_n_i", "bus_rd_n"),
     ("bus_wr_n_i", "bus_wr_n"),
@@ -28,29 +24,17 @@ const PARALLEL: &[(&str, &str)] = &[
     ("bus_data_oe", "bus_data_oe"),
 ];
 
-impl Front for Parallel {
-    fn design(
-        &self,
-        card: &CardConfig,
-        name: &str,
-        times: &ServiceTimes,
-        _: u64,
-    ) -> Result<Design, GenError> {
-        design_of(ParallelCard::with_times(card, times), name)
-    }
-
-    fn bench_host(&self) -> Option<BenchHost> {
-        Some(BenchHost {
-            text: include_str!("../templates/bench_host/parallel.v"),
-            moves_words: true,
-            connections: PARALLEL,
-        })
-    }
-
-    fn controller(&self) -> Option<&'static dyn Controller> {
-        Some(&Parallel)
-    }
-}
+/// What there is to know of it.
+pub(super) const FRONT: Front = Front {
+    design: |card, name, times, _| design_of(ParallelCard::with_times(card, times), name),
+    bench_host: Some(BenchHost {
+        text: include_str!("../templates/bench_host/parallel.v"),
+        moves_words: true,
+        connections: PORTS,
+    }),
+    controller: Some(&Parallel),
+    interface: None,
+};
 
 fn rest(card: &mut Pins) {
     set_all(

@@ -1,14 +1,10 @@
 //! SPI, mode 0, with check sums.
 
-use crate::error::GenError;
 use crate::front::{design_of, BenchHost, Controller, Front, Pins};
 use endat_hdl::card::bus::spi::SpiCard;
-use endat_hdl::config::CardConfig;
-use endat_hdl::endat::service::program::ServiceTimes;
-use rtl_design::elaborate::Design;
 
-/// See the module.
-pub(super) struct Spi;
+/// A controller.
+struct Spi;
 
 /// Half a period of the serial clock, and the pause around a frame, in system clock cycles: the shortest that are allowed.
 const SCK_HALF_CYCLES: u64 = 4;
@@ -21,7 +17,7 @@ const SPI_READ: u8 = 3;
 const SPI_HEAD_BYTES: usize = 4;
 /// Check sum of SPI: CRC-16/IBM-3740.
 const CHECK: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
-const SPI: &[(&str, &str)] = &[
+const PORTS: &[(&str, &str)] = &[
     ("spi_sck_i", "spi_sck"),
     ("spi_cs_n_i", "spi_cs_n"),
     ("spi_mosi_i", "spi_mosi"),
@@ -29,29 +25,17 @@ const SPI: &[(&str, &str)] = &[
     ("spi_miso_oe", "spi_miso_oe"),
 ];
 
-impl Front for Spi {
-    fn design(
-        &self,
-        card: &CardConfig,
-        name: &str,
-        times: &ServiceTimes,
-        _: u64,
-    ) -> Result<Design, GenError> {
-        design_of(SpiCard::with_times(card, times), name)
-    }
-
-    fn bench_host(&self) -> Option<BenchHost> {
-        Some(BenchHost {
-            text: include_str!("../templates/bench_host/spi.v"),
-            moves_words: false,
-            connections: SPI,
-        })
-    }
-
-    fn controller(&self) -> Option<&'static dyn Controller> {
-        Some(&Spi)
-    }
-}
+/// What there is to know of it.
+pub(super) const FRONT: Front = Front {
+    design: |card, name, times, _| design_of(SpiCard::with_times(card, times), name),
+    bench_host: Some(BenchHost {
+        text: include_str!("../templates/bench_host/spi.v"),
+        moves_words: false,
+        connections: PORTS,
+    }),
+    controller: Some(&Spi),
+    interface: None,
+};
 
 impl Controller for Spi {
     fn rest(&self, card: &mut Pins) {

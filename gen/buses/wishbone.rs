@@ -1,18 +1,14 @@
 //! Wishbone B4, classic.
 
-use crate::error::GenError;
 use crate::front::{
     comes, design_of, set_all, BenchHost, BusInterface, Controller, Front, LitexBus, Pins,
 };
 use endat_hdl::card::bus::wishbone::WishboneCard;
-use endat_hdl::config::CardConfig;
-use endat_hdl::endat::service::program::ServiceTimes;
-use rtl_design::elaborate::Design;
 
-/// See the module.
-pub(super) struct Wishbone;
+/// A controller.
+struct Wishbone;
 
-const WISHBONE: &[(&str, &str)] = &[
+const PORTS: &[(&str, &str)] = &[
     ("wb_cyc_i", "wb_cyc"),
     ("wb_stb_i", "wb_cyc"),
     ("wb_we_i", "wb_we"),
@@ -24,48 +20,30 @@ const WISHBONE: &[(&str, &str)] = &[
     ("wb_err_o", "wb_err"),
 ];
 
-const INTERFACE: BusInterface = BusInterface {
-    name: "wb",
-    vivado: "",
-    ipxact: Some(["opencores.org", "interface", "wishbone", "B4"]),
-    platform_designer: "",
-    unused: &[],
-    logical: &[],
-    address: Some(("adr_i", 4)),
-    litex: Some(LitexBus {
-        module: "wishbone",
-        class: "wishbone.Interface(data_width=32, adr_width=BITS, addressing=\"word\")",
-        field,
+/// What there is to know of it.
+pub(super) const FRONT: Front = Front {
+    design: |card, name, times, _| design_of(WishboneCard::with_times(card, times), name),
+    bench_host: Some(BenchHost {
+        text: include_str!("../templates/bench_host/wishbone.v"),
+        moves_words: true,
+        connections: PORTS,
+    }),
+    controller: Some(&Wishbone),
+    interface: Some(BusInterface {
+        name: "wb",
+        vivado: "",
+        ipxact: Some(["opencores.org", "interface", "wishbone", "B4"]),
+        platform_designer: "",
+        unused: &[],
+        logical: &[],
+        address: Some(("adr_i", 4)),
+        litex: Some(LitexBus {
+            module: "wishbone",
+            class: "wishbone.Interface(data_width=32, adr_width=BITS, addressing=\"word\")",
+            field,
+        }),
     }),
 };
-
-impl Front for Wishbone {
-    fn design(
-        &self,
-        card: &CardConfig,
-        name: &str,
-        times: &ServiceTimes,
-        _: u64,
-    ) -> Result<Design, GenError> {
-        design_of(WishboneCard::with_times(card, times), name)
-    }
-
-    fn bench_host(&self) -> Option<BenchHost> {
-        Some(BenchHost {
-            text: include_str!("../templates/bench_host/wishbone.v"),
-            moves_words: true,
-            connections: WISHBONE,
-        })
-    }
-
-    fn controller(&self) -> Option<&'static dyn Controller> {
-        Some(&Wishbone)
-    }
-
-    fn interface(&self) -> Option<&'static BusInterface> {
-        Some(&INTERFACE)
-    }
-}
 
 impl Controller for Wishbone {
     fn read_word(&self, card: &mut Pins, address: u16) -> Option<u32> {

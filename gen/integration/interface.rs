@@ -52,7 +52,7 @@ impl Interface {
 
 /// The interface of a card with this bus; `None` where no tool connects it as one.
 pub fn of(bus: HostBus, ports: &[Port]) -> Option<Interface> {
-    let known = front(bus).interface()?;
+    let known = front(bus).interface.as_ref()?;
     let prefix = format!("{}_", known.name);
     let own = ports.iter().filter_map(|port| {
         let rest = port.name.strip_prefix(&prefix)?;

@@ -52,7 +52,7 @@ pub fn pushes(bus: HostBus, card: &CardConfig) -> bool {
 
 /// The host of a card with this bus; none for a port without a bus.
 pub fn host(bus: HostBus, card: &CardConfig) -> Result<Option<Host>, GenError> {
-    let Some(host) = front(bus).bench_host() else {
+    let Some(host) = &front(bus).bench_host else {
         return Ok(None);
     };
     let words = if host.moves_words { WORDS } else { "" };

@@ -23,7 +23,7 @@ impl Host {
         if bench.has_port("second_cs_n_i") {
             bench.set("second_cs_n_i", 1);
         }
-        let controller = front(bus).controller();
+        let controller = front(bus).controller;
         if let Some(controller) = controller {
             controller.rest(bench);
         }

@@ -233,7 +233,7 @@ impl VirtualCard {
                 card.stream.additional_data,
             )
         });
-        let host = match front(bus).controller() {
+        let host = match front(bus).controller {
             None => HostEnd::Uart(Uart::new(&mut bench, card.uart_bit_cycles)),
             Some(words) => HostEnd::Gateway(Gateway::new(words, &mut bench, LINK_TIMEOUT_US, sets)),
         };

@@ -60,7 +60,9 @@ int main(void)
 "#;
     std::fs::write(folder.join("main.c"), program).unwrap();
     let include = format!("-I{}", home().display());
-    let mut arguments = vec!["-std=c99", "-Wall", "-Werror", "-o", "run", "main.c", &include];
+    let mut arguments = vec![
+        "-std=c99", "-Wall", "-Werror", "-o", "run", "main.c", &include,
+    ];
     let sources = sources();
     arguments.extend(sources.iter().map(String::as_str));
     let (is_good, text) = tools::run("gcc", &folder, &arguments);

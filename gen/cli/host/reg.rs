@@ -320,13 +320,22 @@ mod tests {
     fn values_are_numbers_or_names_of_codes_and_bits() {
         let place = |name: &str| Place::named(name, 2).unwrap();
         let mask = place("interrupt.mask.channel_1");
-        assert_eq!(value_of(&mask, "result,alarm", false, Protocol::Endat).unwrap(), 0b101);
+        assert_eq!(
+            value_of(&mask, "result,alarm", false, Protocol::Endat).unwrap(),
+            0b101
+        );
         assert_eq!(value_of(&mask, "0xF", false, Protocol::Endat).unwrap(), 15);
         assert!(value_of(&mask, "result,alarms", false, Protocol::Endat).is_err());
         let command = place("config0.frame.command");
-        assert_eq!(value_of(&command, "0b000111", false, Protocol::Endat).unwrap(), 7);
+        assert_eq!(
+            value_of(&command, "0b000111", false, Protocol::Endat).unwrap(),
+            7
+        );
         assert!(value_of(&command, "64", false, Protocol::Endat).is_err());
         let whole = place("interrupt.mask");
-        assert_eq!(value_of(&whole, "4294967295", false, Protocol::Endat).unwrap(), u32::MAX);
+        assert_eq!(
+            value_of(&whole, "4294967295", false, Protocol::Endat).unwrap(),
+            u32::MAX
+        );
     }
 }
