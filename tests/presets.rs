@@ -16,7 +16,7 @@ use endat_hdl::protocol::ModeCommand;
 use endat_hdl::protocols::ssi::{asked::Parity, protocol::BIT_DELAY_NS};
 use endat_hdl::protocols::t_format::protocol::RATE_TOLERANCE_PPM;
 use endat_hdl::regs::Protocol;
-use endat_sim::bench::{Bench, Link, OtherEncoder, PinNames, TFormatLink, Uart};
+use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
 use endat_sim::encoder::EncoderConfig;
 use endat_sim::line::LineConfig;
 use endat_sim::ssi::{self, SsiLink};

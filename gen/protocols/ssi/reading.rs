@@ -43,7 +43,7 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted> {
     let spoken = Spoken::Ssi(SsiSpec {
         gray: gray?,
         parity: parity?,
-        twice: twice.map_or(false, |at| at.value),
+        twice: twice.is_some_and(|at| at.value),
     });
     Some(Wanted {
         spec: ChannelSpec {
