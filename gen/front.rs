@@ -1,4 +1,4 @@
-//! What the program has to know of a bus that a card stands behind: one implementation is all of it, [`crate::buses`] lists them.
+//! What the program has to know of a bus that a card stands behind: one row is all of it, [`crate::buses`] lists them.
 
 use crate::error::GenError;
 use endat_hdl::card::uart_bridge::ADDRESS_BITS;
@@ -55,12 +55,21 @@ pub trait Controller: Sync {
     /// Writes a word.
     fn write(&self, card: &mut Pins, address: u16, word: u32);
 
-    /// Reads `count` words, from addresses that rise or from one; what does not answer is 0.
-    fn read(&self, card: &mut Pins, address: u16, count: usize, rises: bool) -> Vec<u32> {
-        let step = u16::from(rises);
-        let addresses = (0..count as u16).map(|n| address.wrapping_add(step * n));
+    /// Words of addresses that rise; what does not answer is 0.
+    fn burst(&self, card: &mut Pins, address: u16, count: usize) -> Vec<u32> {
+        let addresses = (0..count as u16).map(|n| address.wrapping_add(n));
         let words = addresses.map(|a| self.read_word(card, a).unwrap_or(0));
         words.collect()
+    }
+
+    /// Reads `count` words, from addresses that rise or from one; what does not answer is 0.
+    fn read(&self, card: &mut Pins, address: u16, count: usize, rises: bool) -> Vec<u32> {
+        match rises {
+            true => self.burst(card, address, count),
+            false => (0..count)
+                .flat_map(|_| self.burst(card, address, 1))
+                .collect(),
+        }
     }
 
     /// Words of results that are read one by one are of one moment only while they are held.

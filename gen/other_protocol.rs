@@ -95,6 +95,29 @@ pub trait OtherFaults: Send {
     fn mend(&mut self, encoder: &mut dyn OtherEncoder) -> bool;
 }
 
+/// Replies that are spoilt, up to some number of them.
+#[derive(Default)]
+pub struct Spoilt(Option<u64>);
+
+impl Spoilt {
+    /// All replies until the encoder has counted so many; none if something lasts.
+    pub fn until(count: Option<u64>) -> Self {
+        Self(count)
+    }
+
+    /// Whether they come to their end with so many counted.
+    pub fn ends_at(&mut self, count: u64) -> bool {
+        let ends = self.0.is_some_and(|until| count >= until);
+        self.0 = self.0.filter(|_| !ends);
+        ends
+    }
+
+    /// Whether more will be spoilt.
+    pub fn goes_on(&self) -> bool {
+        self.0.is_some()
+    }
+}
+
 /// What is asked of a channel.
 pub struct Wanted {
     /// All but its triggers.

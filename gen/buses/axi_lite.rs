@@ -28,7 +28,7 @@ const PORTS: &[(&str, &str)] = &[
     ("s_axi_rready", "rready"),
 ];
 
-/// Inputs of that kind.
+/// What kind of access it is, which the card does not look at.
 const PROTECTION: &[Unused] = &[
     Unused {
         name: "s_axi_awprot",

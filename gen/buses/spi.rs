@@ -54,13 +54,9 @@ impl Controller for Spi {
         spi_frame(card, &frame);
     }
 
-    /// Of addresses that rise in one frame, which is one moment.
-    fn read(&self, card: &mut Pins, address: u16, count: usize, rises: bool) -> Vec<u32> {
-        if rises {
-            return spi_read(card, address, count).unwrap_or(vec![0; count]);
-        }
-        let words = (0..count).map(|_| self.read_word(card, address).unwrap_or(0));
-        words.collect()
+    /// In one frame, which is one moment.
+    fn burst(&self, card: &mut Pins, address: u16, count: usize) -> Vec<u32> {
+        spi_read(card, address, count).unwrap_or(vec![0; count])
     }
 }
 

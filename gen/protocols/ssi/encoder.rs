@@ -1,6 +1,6 @@
 //! An SSI encoder at a virtual card: how it moves, and what can be wrong with it.
 
-use crate::other_protocol::{OtherFaults, Plugged};
+use crate::other_protocol::{OtherFaults, Plugged, Spoilt};
 use crate::virtual_card::deed::Deed;
 use crate::virtual_card::settings::{VirtualConfig, NS_PER_M, SECOND};
 use endat_hdl::config::ChannelConfig;
@@ -19,7 +19,7 @@ pub(crate) const DEVICES: &[&str] = &["SSI"];
 const TURN_BITS: u32 = 13;
 
 /// What it and its line can do of the faults that there are.
-const FAULTS: [&str; 7] = [
+const FAULTS: [&str; 8] = [
     "unplug",
     "plug",
     "crc (a bit of the second copy; of the only one it is a wrong position that nobody sees)",
@@ -27,6 +27,7 @@ const FAULTS: [&str; 7] = [
     "slow",
     "jitter",
     "line stuck_low or open",
+    "heal",
 ];
 
 /// The encoder that a channel is configured for.
@@ -69,7 +70,7 @@ pub(crate) fn plug(
     };
     let faults = Faults {
         sound: encoder.clone(),
-        spoilt_until: None,
+        spoilt: Spoilt::default(),
     };
     let mut link = SsiLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
     let turns = motion(n, channel.position_bits, config.speed);
@@ -95,8 +96,7 @@ pub(crate) fn sound(channel: &ChannelConfig, asked: &SsiSpec, n: usize) -> SsiLi
 struct Faults {
     /// As it was.
     sound: EncoderConfig,
-    /// Its frames are spoilt until it has sent so many.
-    spoilt_until: Option<u64>,
+    spoilt: Spoilt,
 }
 
 fn link(encoder: &mut dyn OtherEncoder) -> &mut SsiLink {
@@ -122,21 +122,16 @@ impl OtherFaults for Faults {
             _ => return self.change(link, deed),
         };
         link.encoder_mut().config.defect = defect;
-        self.spoilt_until = ends;
+        self.spoilt = Spoilt::until(ends);
         Some(())
     }
 
     fn mend(&mut self, encoder: &mut dyn OtherEncoder) -> bool {
-        let Some(frames) = self.spoilt_until else {
-            return false;
-        };
         let encoder = link(encoder).encoder_mut();
-        let goes_on = encoder.frames() < frames;
-        if !goes_on {
+        if self.spoilt.ends_at(encoder.frames()) {
             encoder.config.defect = Defect::None;
-            self.spoilt_until = None;
         }
-        goes_on
+        self.spoilt.goes_on()
     }
 }
 
@@ -151,7 +146,7 @@ impl Faults {
             Deed::Heal => {
                 link.plug();
                 link.encoder_mut().config = self.sound.clone();
-                self.spoilt_until = None;
+                self.spoilt = Spoilt::default();
             }
             _ => return None,
         }

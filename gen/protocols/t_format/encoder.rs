@@ -1,6 +1,6 @@
 //! A T-format encoder at a virtual card: how it moves, and what can be wrong with it.
 
-use crate::other_protocol::{OtherFaults, Plugged};
+use crate::other_protocol::{OtherFaults, Plugged, Spoilt};
 use crate::virtual_card::deed::Deed;
 use crate::virtual_card::settings::{VirtualConfig, NS_PER_M, SECOND};
 use endat_sim::bench::{OtherEncoder, TFormatLink, TFormatMotion};
@@ -56,7 +56,7 @@ pub(crate) fn plug(bit_hz: u64, channel: usize, is_open: bool, config: &VirtualC
     };
     let faults = Faults {
         sound: encoder.clone(),
-        spoilt_until: None,
+        spoilt: Spoilt::default(),
     };
     let mut link = TFormatLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
     let turns = motion(channel, config.speed);
@@ -90,8 +90,7 @@ pub(crate) fn sound(bit_hz: u64, n: usize) -> TFormatLink {
 struct Faults {
     /// As it was.
     sound: EncoderConfig,
-    /// Its replies are spoilt until it has heard so many requests.
-    spoilt_until: Option<u64>,
+    spoilt: Spoilt,
 }
 
 fn link(encoder: &mut dyn OtherEncoder) -> &mut TFormatLink {
@@ -117,21 +116,16 @@ impl OtherFaults for Faults {
             _ => return self.change(link, deed),
         };
         link.encoder_mut().config.defect = defect;
-        self.spoilt_until = ends;
+        self.spoilt = Spoilt::until(ends);
         Some(())
     }
 
     fn mend(&mut self, encoder: &mut dyn OtherEncoder) -> bool {
-        let Some(requests) = self.spoilt_until else {
-            return false;
-        };
         let encoder = link(encoder).encoder_mut();
-        let goes_on = (encoder.requests().len() as u64) < requests;
-        if !goes_on {
+        if self.spoilt.ends_at(encoder.requests().len() as u64) {
             encoder.config.defect = Defect::None;
-            self.spoilt_until = None;
         }
-        goes_on
+        self.spoilt.goes_on()
     }
 }
 
@@ -157,7 +151,7 @@ impl Faults {
             Deed::Heal => {
                 link.plug();
                 link.encoder_mut().config = self.sound.clone();
-                self.spoilt_until = None;
+                self.spoilt = Spoilt::default();
             }
             _ => return None,
         }
