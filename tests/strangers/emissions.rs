@@ -11,13 +11,6 @@ use std::path::Path;
 
 const PYTHON: &str = "cocotb at every emission";
 
-/// The texts of all.
-fn all() -> Vec<(String, String)> {
-    let texts = texts();
-    assert_eq!(texts.len(), 35, "docs/works-with.md says how many");
-    texts
-}
-
 /// The emissions, written; `of` gives what is wrong with one.
 fn check(
     test: &str,
@@ -98,7 +91,7 @@ fn has_cocotb() -> bool {
 #[test]
 fn every_emission_is_clean_in_every_language() {
     if has_tools() {
-        check("lint", &all(), |emission, folder| {
+        check("lint", &texts(), |emission, folder| {
             let lint = |reader: Reader| {
                 let said = reader.lint(folder, emission.top(), &emission.files);
                 Some(format!("{reader}: {}", said.unwrap()?))
@@ -113,7 +106,7 @@ fn every_emission_is_clean_in_every_language() {
 fn cocotb_reads_the_identification_of_every_emission() {
     if has_tools() && has_cocotb() {
         let script = include_str!("../cocotb/run.py");
-        let texts: Vec<_> = tools::third(&all(), script.len()).cloned().collect();
+        let texts: Vec<_> = tools::third(&texts(), script.len()).cloned().collect();
         check("cocotb", &texts, |emission, folder| {
             cocotb(emission, folder, "-g2005").into_iter().collect()
         });
@@ -128,7 +121,7 @@ fn every_emission_runs_in_every_language() {
     if !has_tools() || !has_cocotb() {
         return;
     }
-    let texts = all();
+    let texts = texts();
     let readers = LINTERS.map(Some).into_iter().chain([None]);
     let cases = texts
         .iter()
