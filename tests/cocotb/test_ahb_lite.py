@@ -8,18 +8,22 @@ import card
 SIGNALS = {name: name for name in ["haddr", "hsize", "htrans", "hwdata", "hrdata", "hwrite", "hresp"]}
 
 
-async def master(dut):
-    card.start(dut)
+def host_of(dut):
     # Alone on its bus: always selected, and nobody else makes it wait.
     dut.s_ahb_hsel.value = 1
     dut.s_ahb_hready.value = 1
-    for name in ["htrans", "hwrite", "hsize", "haddr", "hwdata"]:
+    # Its "hready" is the subordinate's output.
+    bus = AHBBus.from_prefix(dut, "s_ahb", signals=SIGNALS | {"hready": "hreadyout"}, optional_signals={})
+    return AHBLiteMaster(bus, dut.clk_i, dut.rst_i, timeout=500)
+
+
+async def master(dut):
+    card.start(dut)
+    for name in ["hsel", "hready", "htrans", "hwrite", "hsize", "haddr", "hwdata"]:
         getattr(dut, f"s_ahb_{name}").value = 0
     await card.release(dut)
     # The master comes behind the first edge: what it sets "at once" before that, iverilog 11 does not notice.
-    # Its "hready" is the subordinate's output.
-    bus = AHBBus.from_prefix(dut, "s_ahb", signals=SIGNALS | {"hready": "hreadyout"}, optional_signals={})
-    host = AHBLiteMaster(bus, dut.clk_i, dut.rst_i, timeout=500)
+    host = host_of(dut)
 
     def good(answer):
         assert answer["resp"] == AHBResp.OKAY, answer

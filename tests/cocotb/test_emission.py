@@ -141,6 +141,15 @@ async def word_bus(dut):
         from cocotbext.axi import AxiLiteBus, AxiLiteMaster
 
         host = AxiLiteMaster(AxiLiteBus.from_prefix(dut, "s_axi"), dut.clk_i, dut.rst_i)
+    elif BUS == "ahb_lite":
+        from test_ahb_lite import host_of
+
+        host = host_of(dut)
+
+        async def read(address):
+            return int((await host.read([4 * address], [4]))[0]["data"], 16)
+
+        return read
     else:
         from cocotbext.wishbone.driver import WBOp, WishboneMaster
         from test_wishbone import SIGNALS
@@ -166,11 +175,12 @@ MASTERS = {
     "parallel": parallel,
     "apb": word_bus,
     "axi_lite": word_bus,
+    "ahb_lite": word_bus,
     "wishbone": word_bus,
 }
 
 
-@cocotb.test(skip=BUS not in MASTERS)
+@cocotb.test(skip=BUS in ("none", "dsp"))
 async def identifies(dut):
     """The card says what it is, with its clock and its configuration."""
     await start(dut)

@@ -2,6 +2,8 @@
 
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse_any, preset, Configuration, PRESETS, RECEIVER_PRESETS};
+use endat_hdl::card::bus::HostBus;
+use endat_regs::Protocol;
 
 /// An EnDat 2.2 channel, and an EnDat 2.1 one.
 const NEW: &str = "position_bits = 29\ncommand = \"111000\"";
@@ -41,12 +43,13 @@ const fn card(
 const LINK: &str = "[link]\nbaud = 1_000_000\nread_hz = 100\n[board]\nname = \"papilio_pro\"\n";
 
 /// Each bus, part, protocol and extreme at least once, with clocks whose half period is no whole number of picoseconds among them.
-const CARDS: [Card; 26] = [
+const CARDS: [Card; 29] = [
     card("one_bit", 128_000_000, 16_000_000, "uart", &["position_bits = 1\ncommand = \"000111\""], LINK),
     card("widest", 96_000_000, 2_000_000, "uart", &["position_bits = 48\ncommand = \"111000\"", "clock_hz = 8_000_000\nposition_bits = 13\ncommand = \"000111\""], LINK),
     card("apb", 100_000_000, 3_125_000, "apb", &[NEW, OLD], "[outputs]\nparts = [\"position\", \"interrupt\"]\n"),
     card("wishbone", 48_000_000, 3_000_000, "wishbone", &[NEW, OLD], "[outputs]\nparts = [\"interrupt\"]\n"),
     card("axi_lite", 77_000_000, 7_000_000, "axi_lite", &[NEW, OLD], "[outputs]\nparts = [\"position\"]\n[safety]\nparts = [\"recovery_counter\", \"second_interface\"]\n"),
+    card("ahb_lite", 90_000_000, 5_000_000, "ahb_lite", &[OLD, NEW], "[outputs]\nparts = [\"interrupt\"]\n"),
     card("spi", 73_728_000, 4_608_000, "spi", &[NEW, OLD], ""),
     card("spi_board", 64_000_000, 8_000_000, "spi", &[NEW, OLD], "[board]\nname = \"papilio_pro\"\n[safety]\nparts = [\"second_interface\"]\n"),
     card("parallel", 240_000_000, 10_000_000, "parallel", &[NEW, OLD], ""),
@@ -68,7 +71,23 @@ const CARDS: [Card; 26] = [
     card("eight_channels", 100_000_000, 4_000_000, "axi_lite", &[NEW, OLD, NEW, OLD, NEW, OLD, NEW, OLD], ""),
     card("t_format", 100_000_000, 0, "apb", &["protocol = \"t_format\"\nbit_hz = 5_000_000\nrequest = 0", T_FORMAT, "protocol = \"t_format\"\nrequest = 12\nfilter_ns = 0"], ""),
     card("both_protocols", 100_000_000, 3_125_000, "axi_lite", &[NEW, T_FORMAT], "[outputs]\nparts = [\"position\", \"interrupt\"]\n[stream]\nfifo_bytes = 1024\nstart = \"collect\"\n"),
+    card("ssi", 33_000_000, 0, "wishbone", &["protocol = \"ssi\"\nposition_bits = 1\nparity = \"even\"\nclock_hz = 500_000", "protocol = \"ssi\"\nposition_bits = 48\nclock_hz = 200_000\ntwice = true"], "[outputs]\nparts = [\"position\"]\n"),
+    card("all_protocols", 70_000_000, 2_500_000, "ahb_lite", &["protocol = \"ssi\"\nposition_bits = 13\ncode = \"gray\"\nclock_hz = 500_000", NEW, T_FORMAT], ""),
 ];
+
+/// A bus or a protocol that no emission has would be shown to nobody.
+#[test]
+fn every_bus_and_protocol_is_among_them() {
+    let texts = texts();
+    let has = |words: String| texts.iter().any(|(_, text)| text.contains(&words));
+    for bus in HostBus::ALL {
+        assert!(has(format!("bus = \"{}\"", bus.name())), "{bus:?}");
+    }
+    for protocol in &Protocol::ALL[1..] {
+        let key = protocol.row().word;
+        assert!(has(format!("protocol = \"{key}\"")), "{key}");
+    }
+}
 
 /// A receiver that is no preset.
 const RECEIVER: (&str, &str) = (

@@ -116,7 +116,7 @@ fn cocotb_reads_the_identification_of_every_emission() {
 /// The full product: every emission in every simulator and language; `cargo test every_emission_runs -- --ignored --nocapture` tells each that
 /// has ended. Where it was stopped, `FIRST_CASE` goes on.
 #[test]
-#[ignore = "136 simulations, and as many builds"]
+#[ignore = "every emission in every simulator and language: simulations and builds of an hour and a half"]
 fn every_emission_runs_in_every_language() {
     if !has_tools() || !has_cocotb() {
         return;
