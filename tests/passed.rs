@@ -47,15 +47,34 @@ const MEANS_OTHERS: [&str; 6] = [
     "PRESETS",
 ];
 
-/// Begins a test that simulates the core, and ends it if it has passed with just this core; given are other sources that it depends on.
+/// Of what a simulated card and the host library at it are made besides.
+pub const HOST: [&str; 8] = [
+    "gen/virtual_card",
+    "gen/encoders.rs",
+    "gen/buses.rs",
+    "gen/buses",
+    "gen/front.rs",
+    "host",
+    "drivers/rust",
+    "tests/hosts/desk.rs",
+];
+
+/// Begins a test that simulates the core, and ends it if it has passed with just this core, and host; given are other sources that it depends on.
 macro_rules! once_for_this_core {
+    (with host $(, $more:literal)*) => {
+        once_for_this_core!(@ $crate::passed::HOST, [$($more),*])
+    };
     ($($more:literal),*) => {
+        once_for_this_core!(@ [] as [&str; 0], [$($more),*])
+    };
+    (@ $host:expr, $more:expr) => {
         fn here() {}
         let name = std::any::type_name_of_val(&here);
         let name = name
             .trim_start_matches("system::")
             .trim_end_matches("::here");
-        let check = $crate::passed::Check::of_core(name, file!()).sources(&[$($more),*]);
+        let check = $crate::passed::Check::of_core(name, file!());
+        let check = check.sources(&$host).sources(&$more as &[&str]);
         let Some(_running) = check.begin() else {
             return;
         };

@@ -46,11 +46,13 @@ pub fn random_program(seed: u64) -> Vec<u32> {
 
 #[test]
 fn a_channel_agrees() {
+    once_for_this_core!("design/tests");
     channel_agrees("channel", Features::default());
 }
 
 #[test]
 fn a_channel_with_all_features_agrees() {
+    once_for_this_core!("design/tests");
     channel_agrees("channel_all", Features::PROTOCOL);
 }
 
@@ -167,11 +169,13 @@ fn the_card_agrees() {
 /// A random program, one word in eight of which goes to another place, with a host that reads and writes.
 #[test]
 fn a_sequencer_agrees() {
+    once_for_this_core!("design/tests");
     sequencer_agrees(false);
 }
 
 #[test]
 fn a_shared_sequencer_agrees() {
+    once_for_this_core!("design/tests");
     sequencer_agrees(true);
 }
 

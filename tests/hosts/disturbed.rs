@@ -66,13 +66,7 @@ impl Transport for Disturbed {
 /// Catches a bridge that hangs, or gives words of another command: whatever byte is lost or added, the next reads are right.
 #[test]
 fn after_a_lost_or_added_byte_the_words_are_right_again() {
-    once_for_this_core!(
-        "gen/virtual_card",
-        "gen/buses",
-        "gen/front.rs",
-        "host",
-        "drivers/rust"
-    );
+    once_for_this_core!(with host);
     let card = card_of(&quick("s6_two_channel"));
     let link = Disturbed {
         card,

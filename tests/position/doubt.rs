@@ -1,6 +1,7 @@
 //! What the core itself has reason to doubt is no position: lines that change under way, settings that change, registers that are upset.
 
 use super::rig::*;
+use crate::passed::once_for_this_core;
 use endat_hdl::endat::{
     channel::{Channel, Features, FixedTimes},
     transaction::cause,
@@ -344,6 +345,7 @@ fn a_limit_of_zero_does_not_shorten_the_quiet_time() {
 /// comes from the frame at the full clock behind it.
 #[test]
 fn an_encoder_of_another_width_gives_no_position_while_the_delay_is_measured() {
+    once_for_this_core!();
     let setup = Setup::card();
     let measured = setup.measured();
     let (mut slow, mut looked_good) = (0, 0);

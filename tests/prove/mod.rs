@@ -205,6 +205,11 @@ fn a_user_who_changes_a_line_sees_a_proof_fail() {
     if !tools::require_all(&TOOLS, "prove --rtl") {
         return;
     }
+    let check = seen("proofs of changed lines", [&subject(BARE)]);
+    check.unless_passed(changed_lines_are_told);
+}
+
+fn changed_lines_are_told() {
     let dir = Dir::new("prove-rtl");
     dir.write("bare.toml", BARE.as_bytes());
     let (config, out) = (dir.path("bare.toml"), dir.path("out"));

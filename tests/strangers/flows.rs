@@ -59,10 +59,21 @@ fn what_a_flow_says_of_bad_verilog_is_told() {
     if !require("a flow of yosys") {
         return;
     }
+    let configuration = load_any_preset("demo").unwrap();
+    let [ice40] = flows::named(&["ice40".to_owned()]).unwrap()[..] else {
+        panic!("one flow");
+    };
+    let (_, files) = flows::core(&configuration, ice40).unwrap();
+    let check = Check::new("what a flow says of bad Verilog").files(&files);
+    check
+        .sources(&["gen/area", "gen/cli/flows.rs", "tests/strangers/flows.rs"])
+        .unless_passed(|| bad_verilog_and_a_card_are_told(&ice40));
+}
+
+fn bad_verilog_and_a_card_are_told(ice40: &Flow) {
     let text = "module card (input wire a, input wire d, output reg q, output wire z);\n    always @(posedge a) q <= d;\n    assign z = d & q[3];\nendmodule\n";
     let files = [endat_gen::artifact::Artifact::new("card.v", text)];
-    let ice40 = flows::named(&["ice40".to_owned()]).unwrap();
-    let found = flows::through(&files, "card", ice40[0]).unwrap();
+    let found = flows::through(&files, "card", *ice40).unwrap();
     assert!(!found.warnings.is_empty(), "{found:?}");
     let dir = Dir::new("flows");
     let config = dir.write("card.toml", good(&["presets", "--show", "demo"]).as_bytes());

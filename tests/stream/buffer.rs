@@ -36,6 +36,7 @@ fn read_bytes(rig: &mut Rig, lane: &mut u8, count: usize) -> Vec<u8> {
 
 #[test]
 fn what_does_not_fit_is_dropped_whole_at_every_fill_level() {
+    once_for_this_core!();
     for n in [1, 2, 8] {
         let frame = frame_bytes(n, false) as usize;
         let mut rig = Rig::new(1024, n, true, false);
