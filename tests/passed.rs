@@ -155,7 +155,7 @@ impl Check {
         names.retain(|name| !name.ends_with(".md") && name != "__pycache__");
         // Tests of a crate decide nothing here.
         if !path.starts_with("tests") {
-            names.retain(|name| !["tests", "tests.rs"].contains(&name.as_str()));
+            names.retain(|name| !["tests", "tests.rs", "golden"].contains(&name.as_str()));
         }
         names.sort();
         let inside = names.iter().map(|name| format!("{path}/{name}"));

@@ -1,3 +1,8 @@
+    // The bank has begun what this transfer asks for; the last byte of it; the bytes that it gave.
+    reg f_done = 0;
+    reg [1:0] f_lanes = 0;
+    reg [31:0] f_word = 0;
+    reg [5:0] f_waits = 0;
     // Configuration words pass in one access, as written words do; others are read byte by byte.
     wire f_config = (t_address[10:7] == 2) & !t_address[2];
     wire p_config = (p_asked[10:7] == 2) & !p_asked[2];
@@ -5,8 +10,6 @@
     wire f_whole = \u_words.whole ;
     wire f_mine = busy & !t_left;
     always @(posedge clock) begin
-        p_held <= t_held; p_on <= t_on; p_answer <= t_answer;
-        p_asked <= t_address; p_refused <= t_refused; p_writes <= t_write; p_word <= t_word;
         if (done && !f_write) f_word <= {f_word[23:0], read_byte};
         if (!t_on | t_answer) begin
             f_done <= 0;

@@ -14,10 +14,12 @@ use rtl_design::elaborate::block_name;
 use std::fs;
 
 const BANK: &str = include_str!("../formal/bank.vh");
-const GHOSTS: &str = include_str!("../formal/ghosts.vh");
+const BEFORE: &str = include_str!("../formal/before.vh");
+const FOLLOWS: &str = include_str!("../formal/follows.vh");
 const APB: &str = include_str!("../formal/apb.vh");
 const WISHBONE: &str = include_str!("../formal/wishbone.vh");
 const TRANSFER: &str = include_str!("../formal/transfer.vh");
+const AHB_LITE: &str = include_str!("../formal/ahb_lite.vh");
 const AXI_LITE: &str = include_str!("../formal/axi_lite.vh");
 const RING: &str = include_str!("../formal/ring.vh");
 
@@ -37,17 +39,23 @@ struct Claim {
     waits: &'static [&'static str],
 }
 
-const FRONTS: [Claim; 3] = [
+const FRONTS: [Claim; 4] = [
     Claim {
         bus: HostBus::Apb,
         block: "apb_front",
-        properties: &[BANK, GHOSTS, APB, TRANSFER],
+        properties: &[BANK, BEFORE, APB, FOLLOWS, TRANSFER],
         waits: &["answers_in_time"],
     },
     Claim {
         bus: HostBus::Wishbone,
         block: "wishbone_front",
-        properties: &[BANK, GHOSTS, WISHBONE, TRANSFER],
+        properties: &[BANK, BEFORE, WISHBONE, FOLLOWS, TRANSFER],
+        waits: &["answers_in_time"],
+    },
+    Claim {
+        bus: HostBus::AhbLite,
+        block: "ahb_lite_front",
+        properties: &[BANK, AHB_LITE, TRANSFER],
         waits: &["answers_in_time"],
     },
     Claim {
@@ -201,7 +209,7 @@ fn fronts_that_are_wrong_are_refuted() {
     if !can_prove("refutations on the fronts") {
         return;
     }
-    let [apb, wishbone, axi_lite] = &FRONTS;
+    let [apb, wishbone, ahb_lite, axi_lite] = &FRONTS;
     for (claim, from, to, wanted) in [
         // A SETUP that is held and changed is taken for the transfer.
         (
@@ -217,6 +225,15 @@ fn fronts_that_are_wrong_are_refuted() {
             "asks & (!abandoned | writing)",
             "answer_has_been_done",
         ),
+        // The address of the next transfer is taken while this one waits.
+        (
+            ahb_lite,
+            "hready & htrans[1] & hreadyout",
+            "hready & htrans[1]",
+            "error_has_two_cycles",
+        ),
+        // A part of a word is read as a whole one.
+        (ahb_lite, " & (hsize == 3'd2)", "", "answer_has_been_done"),
         // The answer is overwritten by the next one.
         (
             axi_lite,
