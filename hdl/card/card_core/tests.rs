@@ -4,8 +4,10 @@ use crate::config::CardConfig;
 use crate::protocols::t_format::cause;
 use crate::regs::tests::{mixed_config, test_config};
 use crate::regs::{Access, Block as RegisterBlock, CARD, CARD_CONFIG, RESULT, T_FORMAT};
-use crate::testing::tick;
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Compiled, Engine, Keep};
 use rust_hdl::prelude::Block;
+use std::collections::BTreeMap;
 
 mod held;
 mod own_triggers;
@@ -13,9 +15,12 @@ mod own_triggers;
 /// Cycles of a UART bit.
 const BIT: usize = 8;
 
-/// A card with its host: the UART is driven bit by bit.
+/// A card as it is elaborated, as native code, with its host: the UART is driven bit by bit. `tests/elaborate` compares such a card with its
+/// kernels.
 struct Host {
-    card: Card,
+    card: Compiled,
+    /// Where a net is, by its hierarchical name.
+    nets: BTreeMap<String, usize>,
     /// Cycles in which each EnDat clock fell.
     falls: Vec<Vec<u64>>,
     clk: Vec<bool>,
@@ -47,12 +52,12 @@ impl Host {
             channel.abort_us = 2;
         }
         let mut card = Card::with_timeout(&config, 100);
-        card.uart_rx_i.next = true;
-        for pin in &mut card.endat_data_i {
-            pin.next = data;
-        }
         card.connect_all();
+        let design = elaborate(&card, "card").unwrap();
+        let card = Compiled::keeping(&design, Keep::Nets).unwrap();
+        let names = card.nets().map(str::to_owned);
         let mut host = Self {
+            nets: names.enumerate().map(|(at, name)| (name, at)).collect(),
             card,
             falls: vec![Vec::new(); channels],
             clk: vec![true; channels],
@@ -60,22 +65,53 @@ impl Host {
             calibrations: vec![0; channels],
             cycle: 0,
         };
+        (0..channels).for_each(|i| host.set_data(i, data));
         // DATA low for longer than tR.
         host.idle(200);
         host
     }
 
+    fn set(&mut self, pin: &str, level: bool) {
+        let pin = self.card.port(pin);
+        self.card.set(pin, level.into());
+    }
+
+    /// DATA of a channel's encoder.
+    fn set_data(&mut self, channel: usize, level: bool) {
+        self.set(&format!("endat_data{channel}_i"), level);
+    }
+
+    /// What a net has now.
+    fn net(&mut self, name: &str) -> u64 {
+        let Some(value) = self.nets.get(name).and_then(|at| self.card.peek(*at)) else {
+            panic!("{name}: no such net");
+        };
+        value as u64
+    }
+
+    fn is_busy(&mut self, channel: usize) -> bool {
+        self.net(&format!("core.port_{channel}_busy")) == 1
+    }
+
+    /// Number of a channel's result.
+    fn sequence(&mut self, channel: usize) -> u64 {
+        self.net(&format!("core.port_{channel}_sequence"))
+    }
+
     fn step(&mut self, rx: bool) {
-        self.card.uart_rx_i.next = rx;
-        tick(&mut self.card, |c, level| c.clk_i.next = level.into());
-        for (i, pin) in self.card.endat_clk_o.iter().enumerate() {
-            if self.clk[i] && !pin.val() {
+        self.set("uart_rx_i", rx);
+        self.card.tick();
+        for i in 0..self.falls.len() {
+            let clk = self.net(&format!("endat_clk{i}_o")) == 1;
+            if self.clk[i] && !clk {
                 self.falls[i].push(self.cycle);
             }
-            self.clk[i] = pin.val();
-            self.calibrations[i] += usize::from(self.card.core.port[i].calibrate.val());
+            self.clk[i] = clk;
+            let calibrate = self.net(&format!("core.port_{i}.calibrate"));
+            self.calibrations[i] += calibrate as usize;
         }
-        self.tx.push(self.card.uart_tx_o.val());
+        let tx = self.net("uart_tx_o") == 1;
+        self.tx.push(tx);
         self.cycle += 1;
     }
 
@@ -193,9 +229,9 @@ fn every_rw_word_keeps_what_is_written_and_no_other_word_changes() {
         host.write(rw[i], &expected[i..=i]);
     }
     assert_eq!(all(&mut host), expected, "single words");
-    host.card.rst_i.next = true;
+    host.set("rst_i", true);
     host.idle(1);
-    host.card.rst_i.next = false;
+    host.set("rst_i", false);
     host.idle(5);
     assert_eq!(all(&mut host), start, "after reset");
 }
@@ -229,7 +265,7 @@ fn both_channels_clock_falls_in_the_same_cycle_whatever_triggers() {
             },
         );
         match source {
-            "pin" => host.card.trigger_i.next = true,
+            "pin" => host.set("trigger_i", true),
             "timer" => {}
             _ => host.write(address(CARD, "trigger_now", 0), &[1]),
         }
@@ -242,7 +278,7 @@ fn both_channels_clock_falls_in_the_same_cycle_whatever_triggers() {
 #[test]
 fn a_disabled_source_does_not_trigger() {
     let mut host = Host::new(false, 0);
-    host.card.trigger_i.next = true;
+    host.set("trigger_i", true);
     host.write(address(CARD, "trigger_now", 0), &[1]);
     host.idle(1_500);
     assert!(host.falls.iter().all(Vec::is_empty));
@@ -314,7 +350,7 @@ fn a_channel_that_owes_a_result_does_not_hold_up_the_last_one() {
     assert_eq!(status(host.read(RESULT.base, 9)[8]), (1, 1));
     host.idle(300);
     // Channel 0's encoder is ready now: its frame starts and waits for a start bit; channel 1's fails at once.
-    host.card.endat_data_i[0].next = false;
+    host.set_data(0, false);
     host.idle(400);
     host.write(now, &[1]);
     let words = host.read(RESULT.base, 9);
@@ -334,10 +370,16 @@ fn status_led_blinks_quickly_after_an_error_and_slowly_before() {
     assert_eq!(blink_bit(100_000_000, 8), 22);
     assert_eq!(blink_bit(8_000_000, 8), 18);
     let mut host = Host::new(true, 4);
-    assert!(host.card.led_channel_o.iter().all(|led| !led.val()));
-    assert!(host.card.core.faulty.iter().all(|f| !f.val()));
+    assert_eq!(
+        [0, 1].map(|i| host.net(&format!("led_channel{i}_o"))),
+        [0; 2]
+    );
+    assert_eq!(
+        [0, 1, 2].map(|i| host.net(&format!("core.faulty_{i}"))),
+        [0; 3]
+    );
     host.write(address(CARD, "trigger_now", 0), &[1]);
-    assert!(host.card.core.faulty[2].val());
+    assert_eq!(host.net("core.faulty_2"), 1);
 }
 
 #[test]
@@ -389,16 +431,14 @@ fn a_t_format_channel_has_its_words_and_an_endat_channel_none_of_them() {
 #[test]
 fn a_trigger_starts_both_protocols() {
     let mut host = Host::of(false, 4, mixed_config());
-    host.card.endat_data_i[1].next = true;
+    host.set_data(1, true);
     host.idle(3_000);
     host.write(address(CARD, "trigger_now", 0), &[1]);
-    let clock = &host.card.endat_clk_o[1];
-    assert!(clock.val(), "T-format has no clock");
+    assert_eq!(host.net("endat_clk1_o"), 1, "T-format has no clock");
     // Nobody answers: in the T-format channel that is known soonest, and the host sees both results together.
     host.idle(4_000);
-    let port = &host.card.core.port[1];
-    assert_eq!(port.result.sequence.val().to_u64(), 1);
-    assert_eq!(port.result.cause.val().to_u64(), cause::NO_ANSWER);
+    assert_eq!(host.sequence(1), 1);
+    assert_eq!(host.net("core.port_1_cause"), cause::NO_ANSWER);
     assert_eq!(host.read(address(RESULT, "status", 1), 1), [0]);
     assert!(host.falls[1].is_empty(), "no clock");
     assert!(!host.falls[0].is_empty());

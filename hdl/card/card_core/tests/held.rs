@@ -17,16 +17,16 @@ fn results_follow_when_two_channels_are_half_a_frame_apart() {
     // Triggers come faster than frames; nobody answers, so every frame is long.
     let mut host = Host::new(false, 2);
     // Channel 1 gets out of step: its frames fail at once until channel 0 is in the middle of one.
-    host.card.endat_data_i[1].next = true;
+    host.set_data(1, true);
     host.idle(3_000);
-    host.card.endat_data_i[1].next = false;
+    host.set_data(1, false);
     host.idle(3_000);
     let (mut owing, mut last) = (0, [0; 2]);
-    let at_first = [0, 1].map(|i| host.card.core.port[i].result.sequence.val().to_u64());
+    let at_first = [0, 1].map(|i| host.sequence(i));
     for _ in 0..5 {
         for _ in 0..7_000 {
             host.step(true);
-            let owes = host.card.core.port.iter().any(|p| p.busy.val());
+            let owes = host.is_busy(0) || host.is_busy(1);
             owing += u32::from(owes);
         }
         let words = results(&mut host);
@@ -36,7 +36,7 @@ fn results_follow_when_two_channels_are_half_a_frame_apart() {
             *last = sequence;
         }
     }
-    let at_last = [0, 1].map(|i| host.card.core.port[i].result.sequence.val().to_u64());
+    let at_last = [0, 1].map(|i| host.sequence(i));
     assert!(at_last
         .iter()
         .zip(at_first)
@@ -51,12 +51,12 @@ fn results_follow_when_two_channels_are_half_a_frame_apart() {
 fn results_follow_when_the_host_polls_in_step_with_the_timer() {
     // Channel 0 fails at once, channel 1 waits long: between their results the moment is not whole.
     let mut host = Host::new(false, 4);
-    host.card.endat_data_i[0].next = true;
+    host.set_data(0, true);
     let now = address(CARD, "trigger_now", 0);
     host.idle(100);
     host.write(now, &[1]);
-    let (triggered, results_before) = (host.cycle, host.card.core.port[1].result.sequence.val());
-    while host.card.core.port[1].result.sequence.val() == results_before {
+    let (triggered, results_before) = (host.cycle, host.sequence(1));
+    while host.sequence(1) == results_before {
         host.step(true);
     }
     let frame = host.cycle - triggered;
@@ -65,8 +65,8 @@ fn results_follow_when_the_host_polls_in_step_with_the_timer() {
     let period = (frame + 2_500) as u32;
     host.write(address(CARD_CONFIG, "trigger_period", 0), &[period]);
     host.write(address(CARD_CONFIG, "trigger_sources", 0), &[2]);
-    let count = host.card.core.trigger.trigger_count.val();
-    while host.card.core.trigger.trigger_count.val() == count {
+    let count = host.net("core.trigger_trigger_count");
+    while host.net("core.trigger_trigger_count") == count {
         host.step(true);
     }
     let first = host.cycle;

@@ -25,11 +25,11 @@ fn triggers(host: &mut Host, cycles: usize) -> (Vec<Vec<u64>>, Vec<u64>) {
     for _ in 0..cycles {
         host.step(true);
         for (i, own) in own.iter_mut().enumerate() {
-            if host.card.core.trigger_of[i].val() {
+            if host.net(&format!("core.trigger_of_{i}")) == 1 {
                 own.push(host.cycle);
             }
         }
-        if host.card.core.trigger.trigger.val() {
+        if host.net("core.trigger_trigger") == 1 {
             all.push(host.cycle);
         }
     }
@@ -71,15 +71,15 @@ fn each_channel_takes_the_triggers_that_are_its_own() {
     assert!(phase < 3);
     assert!(taken[2].is_empty() && taken[3].is_empty());
     host.write(address(CARD_CONFIG, "trigger_sources", 0), &[4 | 8 << 8]);
-    let before = host.card.core.port[2].result.sequence.val();
+    let before = host.sequence(2);
     host.write(address(CARD, "trigger_now", 0), &[1]);
     host.idle(50);
-    let sequence = |i: usize| host.card.core.port[i].result.sequence.val();
-    assert_eq!(sequence(2), before + 1);
-    assert_eq!(sequence(3).to_u64(), 0);
+    let sequence = [0, 1, 2, 3].map(|i| host.sequence(i));
+    assert_eq!(sequence[2], before + 1);
+    assert_eq!(sequence[3], 0);
     // The disabled channel's line is as bad as the others': nothing is said about it.
-    assert!(host.card.core.faulty[3].val());
-    assert!(sequence(0) > sequence(1) && sequence(1) > sequence(2));
+    assert_eq!(host.net("core.faulty_3"), 1);
+    assert!(sequence[0] > sequence[1] && sequence[1] > sequence[2]);
 }
 
 #[test]
@@ -92,10 +92,10 @@ fn channels_with_equal_settings_trigger_together_whenever_they_were_written() {
     let words = [word(&mut host, 0), word(&mut host, 1)];
     host.write(frame(0), &[words[0] | 3 << 11]);
     host.idle(1_900);
-    host.card.endat_data_i[1].next = false;
+    host.set_data(1, false);
     host.idle(900);
     host.write(frame(1), &[words[1] | 3 << 11]);
-    assert!(host.card.core.port[1].busy.val());
+    assert!(host.is_busy(1));
     let (taken, all) = triggers(&mut host, 12_000);
     assert!(taken[0].len() > 2);
     assert_eq!(taken[0], taken[1], "in the same cycles");
@@ -117,11 +117,11 @@ fn channels_with_equal_settings_trigger_together_whenever_they_were_written() {
 fn a_disabled_channel_is_not_waited_for_and_says_nothing() {
     let own = Some(OwnTrigger::default());
     let mut host = host(&[own, own]);
-    host.card.endat_data_i[1].next = false;
+    host.set_data(1, false);
     let sources = address(CARD_CONFIG, "trigger_sources", 0);
     // Channel 1 has a long frame under way, and is disabled in the middle of it.
     host.idle(1_500);
-    assert!(host.card.core.port[1].busy.val());
+    assert!(host.is_busy(1));
     host.write(sources, &[2 | 2 << 8]);
     assert_eq!(host.read(sources, 1), [2 | 2 << 8]);
     let first = status(host.read(RESULT.base, 1)[0]).0;
@@ -137,11 +137,7 @@ fn a_disabled_channel_is_not_waited_for_and_says_nothing() {
         after >= frames && host.falls[1].len() == after,
         "no frame any more"
     );
-    let core = &host.card.core;
-    assert!(
-        core.port[1].result.cause.val().any(),
-        "its last frame was bad"
-    );
-    assert_eq!(core.faulty[1].val(), core.faulty[2].val());
-    assert!(!core.led_channel_o[1].val());
+    assert_ne!(host.net("core.port_1_cause"), 0, "its last frame was bad");
+    assert_eq!(host.net("core.faulty_1"), host.net("core.faulty_2"));
+    assert_eq!(host.net("led_channel1_o"), 0);
 }

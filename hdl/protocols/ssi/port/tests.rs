@@ -72,7 +72,13 @@ impl Rig {
         self.sent = 0;
         (self.falls, self.rises) = (vec![], vec![]);
         self.trigger();
-        self.steps(3_000);
+        // The encoder may take longer than the port waits; on a line that stays LOW the port waits for ever.
+        let mut left = 3_000;
+        while left > 0 && (self.uut.busy.val() || !self.uut.data_i.val()) {
+            self.steps(1);
+            left -= 1;
+        }
+        self.steps(10);
         self.uut.result.cause.val().to_u64()
     }
 
