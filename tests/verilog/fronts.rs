@@ -183,6 +183,14 @@ fn can_prove(what: &str) -> bool {
         && tools::require("yices-smt2", what)
 }
 
+/// Catches a bus of a system that came without its proof.
+#[test]
+fn every_bus_of_a_system_has_a_claim() {
+    for bus in HostBus::ALL.into_iter().filter(|bus| bus.has_base()) {
+        assert!(FRONTS.iter().any(|claim| claim.bus == bus), "{bus:?}");
+    }
+}
+
 #[test]
 fn fronts_answer_every_request_once_in_order_and_in_time() {
     if !can_prove("proofs on the fronts") {
