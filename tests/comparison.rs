@@ -12,7 +12,12 @@ use std::path::Path;
 /// Catches a figure that was typed, and one that has changed since.
 #[test]
 fn the_page_is_what_the_command_writes() {
-    once_for_this_core!("gen", "tests/data", "docs/comparison.md");
+    once_for_this_core!(
+        "gen",
+        "tests/data/logic_cells.toml",
+        "tests/data/area.toml",
+        "docs/comparison.md"
+    );
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/comparison.md");
     let now = good(&["bench", "comparison"]);
     let page = tools::committed(&path, &now);
