@@ -22,7 +22,7 @@ const TURN_BITS: u32 = 13;
 const FAULTS: [&str; 8] = [
     "unplug",
     "plug",
-    "crc (a bit of the second copy; of the only one it is a wrong position that nobody sees)",
+    "crc (a bit of the second copy, or of the only one, which without a parity bit nobody sees)",
     "silent",
     "slow",
     "jitter",
