@@ -1,8 +1,7 @@
 //! The register map as a Markdown page.
 
 use super::{listed, number, Map, MapBlock, MapRegister, UNLISTED};
-use endat_regs::Field;
-use endat_regs::{Named, Values};
+use endat_regs::{Field, Named, Protocol, Values};
 use std::fmt::Write;
 
 /// The page; addresses are words.
@@ -33,15 +32,24 @@ fn write_long_lists(text: &mut String, block: &MapBlock) {
     let mut lists: Vec<(&[Named], Vec<String>)> = Vec::new();
     for entry in &block.registers {
         for field in entry.register.fields {
-            let own = (field.values, format!("`{}`", field.name));
-            let others = entry.values_elsewhere(field).into_iter();
-            let others = others.map(|(protocol, values)| {
+            // A short list of another protocol beside a long one is a table, too.
+            let is_long = long_list(field.values).is_some();
+            let others = entry.values_elsewhere(field);
+            let own = match others.is_empty() {
+                true => format!("`{}`", field.name),
+                false => format!("`{}` on {}", field.name, Protocol::Endat.row().channel),
+            };
+            let others = others.into_iter().map(|(protocol, values)| {
                 let name = format!("`{}` on {}", field.name, protocol.row().channel);
                 (values, name)
             });
-            for (values, name) in std::iter::once(own).chain(others) {
-                let Some(codes) = long_list(values) else {
-                    continue;
+            for (values, name) in std::iter::once((field.values, own)).chain(others) {
+                let codes = match values {
+                    Values::Codes(codes) if is_long => codes,
+                    _ => match long_list(values) {
+                        Some(codes) => codes,
+                        None => continue,
+                    },
                 };
                 match lists.iter_mut().find(|(known, _)| *known == codes) {
                     Some((_, names)) => names.push(name),

@@ -174,7 +174,9 @@ impl MapRegister {
     /// What a field's numbers or bits stand for on a channel that speaks another protocol than EnDat, if that is something else.
     pub fn values_elsewhere(&self, field: &Field) -> Vec<(Protocol, Values)> {
         let all = field.values_elsewhere();
-        all.filter(|(p, _)| self.spoken.contains(p)).collect()
+        let says = |values: &Values| !listed(*values).is_empty();
+        all.filter(|(p, values)| self.spoken.contains(p) && says(values))
+            .collect()
     }
 
     /// The same in words, behind a description.

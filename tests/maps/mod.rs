@@ -10,7 +10,7 @@ use endat_gen::config::{load_preset, parse, preset, Project};
 use endat_hdl::config::CardConfig;
 use endat_hdl::config::{LineParts, OutputParts, PhaseSource, SafetyParts};
 use endat_hdl::regs::{start, words};
-use endat_regs::{Block, Field, Named, Register, Values, BLOCKS};
+use endat_regs::{Block, Field, Named, Protocol, Register, Values, BLOCKS};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -334,6 +334,29 @@ fn maps_list_every_word_and_field_that_the_card_has() {
         assert!(page.contains(&format!("`{}`", register.name)));
         for field in register.fields {
             assert!(page.contains(&format!("`{}`", field.name)));
+        }
+    }
+}
+
+/// Catches a protocol whose causes stand in no table, and a list that is announced and has nothing in it.
+#[test]
+fn the_page_has_the_causes_of_each_protocol_and_no_empty_list() {
+    for name in ["s6_two_channel", "mixed_protocols", "ssi_two_channel"] {
+        let project = load_preset(name).unwrap();
+        let page = text_of(&project, "_registers.md");
+        for protocol in Protocol::ALL.iter().filter(|p| project.card.speaks(**p)) {
+            for cause in protocol.row().coded {
+                let row = format!("| {} | `{}` | ", cause.number, cause.name);
+                assert!(page.contains(&row), "{name}: {row}");
+            }
+            let channel = format!("on {}", protocol.row().channel);
+            assert!(!page.contains(&format!("{channel}  |")), "{name}");
+            let header = text_of(&project, "_registers.h");
+            let lines: Vec<&str> = header.lines().collect();
+            for pair in lines.windows(2) {
+                let is_empty = pair[0].contains(&channel) && !pair[1].starts_with("#define");
+                assert!(!is_empty, "{name}: {pair:?}");
+            }
         }
     }
 }
