@@ -730,7 +730,6 @@
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_MULTI_TURN_ALARM 0x2u /* multi-turn or battery alarm */
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_UPSET 0x4u /* stored data upset */
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_TRIGGER_OVERRUN 0x8u /* trigger overrun */
-/* line: on an SSI channel */
 
 /* ro: Last good position, bits 31..0. */
 #define ENDAT_MAP_RESULT_POSITION_LOW_WORD(channel) (0x181u + 8u * (channel))
