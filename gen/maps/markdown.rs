@@ -44,13 +44,12 @@ fn write_long_lists(text: &mut String, block: &MapBlock) {
                 (values, name)
             });
             for (values, name) in std::iter::once((field.values, own)).chain(others) {
-                let codes = match values {
-                    Values::Codes(codes) if is_long => codes,
-                    _ => match long_list(values) {
-                        Some(codes) => codes,
-                        None => continue,
-                    },
+                let Values::Codes(codes) = values else {
+                    continue;
                 };
+                if !is_long && long_list(values).is_none() {
+                    continue;
+                }
                 match lists.iter_mut().find(|(known, _)| *known == codes) {
                     Some((_, names)) => names.push(name),
                     None => lists.push((codes, vec![name])),

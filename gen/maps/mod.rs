@@ -173,10 +173,8 @@ impl MapRegister {
 
     /// What a field's numbers or bits stand for on a channel that speaks another protocol than EnDat, if that is something else.
     pub fn values_elsewhere(&self, field: &Field) -> Vec<(Protocol, Values)> {
-        let all = field.values_elsewhere();
-        let says = |values: &Values| !listed(*values).is_empty();
-        all.filter(|(p, values)| self.spoken.contains(p) && says(values))
-            .collect()
+        let all = values_elsewhere(field);
+        all.filter(|(p, _)| self.spoken.contains(p)).collect()
     }
 
     /// The same in words, behind a description.
@@ -197,6 +195,12 @@ impl MapRegister {
         }
         resets
     }
+}
+
+/// What a field's numbers or bits stand for in other protocols than EnDat, where they stand for anything.
+pub(crate) fn values_elsewhere(field: &Field) -> impl Iterator<Item = (Protocol, Values)> + '_ {
+    let all = field.values_elsewhere();
+    all.filter(|(_, values)| !matches!(values, Values::Codes([]) | Values::Bits([])))
 }
 
 /// Meaning of a field, with its unit.

@@ -5,6 +5,7 @@
 mod constants;
 mod peakrdl;
 
+use crate::program::good;
 use crate::tools::{self, require_python};
 use endat_gen::config::{load_preset, parse, preset, Project};
 use endat_hdl::config::CardConfig;
@@ -344,6 +345,8 @@ fn the_page_has_the_causes_of_each_protocol_and_no_empty_list() {
     for name in ["s6_two_channel", "mixed_protocols", "ssi_two_channel"] {
         let project = load_preset(name).unwrap();
         let page = text_of(&project, "_registers.md");
+        let header = text_of(&project, "_registers.h");
+        let lines: Vec<&str> = header.lines().collect();
         for protocol in Protocol::ALL.iter().filter(|p| project.card.speaks(**p)) {
             for cause in protocol.row().coded {
                 let row = format!("| {} | `{}` | ", cause.number, cause.name);
@@ -351,12 +354,13 @@ fn the_page_has_the_causes_of_each_protocol_and_no_empty_list() {
             }
             let channel = format!("on {}", protocol.row().channel);
             assert!(!page.contains(&format!("{channel}  |")), "{name}");
-            let header = text_of(&project, "_registers.h");
-            let lines: Vec<&str> = header.lines().collect();
             for pair in lines.windows(2) {
                 let is_empty = pair[0].contains(&channel) && !pair[1].starts_with("#define");
                 assert!(!is_empty, "{name}: {pair:?}");
             }
         }
     }
+    let told = good(&["explain", "status.line"]);
+    assert!(told.contains("on a T-format channel:"), "{told}");
+    assert!(!told.contains("on an SSI channel:"), "{told}");
 }

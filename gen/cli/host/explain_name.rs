@@ -2,6 +2,7 @@
 
 use crate::cli::explain_key;
 use crate::error::{shown, GenError};
+use crate::maps::values_elsewhere;
 use endat_host::causes;
 use endat_host::did_you_mean::closest;
 use endat_host::feed::NO_CAUSES;
@@ -108,7 +109,7 @@ pub fn text(typed: &str) -> Result<String, GenError> {
                 if parts.len() == 1 && field.name != "cause" {
                     let own = &full(block, register);
                     value_text(&mut values, name, own, field, field.values);
-                    for (protocol, others) in field.values_elsewhere() {
+                    for (protocol, others) in values_elsewhere(field) {
                         let own = format!("{}'s {own}", protocol.row().channel);
                         value_text(&mut values, name, &own, field, others);
                     }
@@ -212,7 +213,7 @@ fn field_text(text: &mut String, field: &Field) {
         field.meaning
     );
     values_text(text, field.values);
-    for (protocol, values) in field.values_elsewhere() {
+    for (protocol, values) in values_elsewhere(field) {
         let _ = writeln!(text, "         on {}:", protocol.row().channel);
         values_text(text, values);
     }

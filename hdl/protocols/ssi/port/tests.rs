@@ -120,6 +120,8 @@ fn positions_of_every_width_come_in_both_codes() {
             assert_eq!(rig.frame(sent), cause::NONE, "{frame} {width}");
             assert!(rig.is_fresh());
             assert_eq!(rig.position(), is, "{frame} {width}");
+            // Nothing more is clocked.
+            rig.steps(2_000);
             let clocks = (width + 1) * (1 + (frame >> 1 & 1));
             assert_eq!(rig.falls.len() as u64, clocks);
             assert_eq!(rig.rises.len() as u64, clocks);
