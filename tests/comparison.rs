@@ -1,6 +1,6 @@
 //! The page that compares, and the tables that translate for users of other systems.
 
-use crate::passed::{once_for_this_core, Check};
+use crate::passed::Check;
 use crate::program::good;
 use crate::tools;
 use endat_gen::area;
@@ -12,12 +12,6 @@ use std::path::Path;
 /// Catches a figure that was typed, and one that has changed since.
 #[test]
 fn the_page_is_what_the_command_writes() {
-    once_for_this_core!(
-        "gen",
-        "tests/data/logic_cells.toml",
-        "tests/data/area.toml",
-        "docs/comparison.md"
-    );
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/comparison.md");
     let now = good(&["bench", "comparison"]);
     let page = tools::committed(&path, &now);

@@ -375,7 +375,7 @@ endmodule
 
 /// Runs a tool; `None` with a line when it is missing and the environment does not insist.
 pub fn tool(name: &str, folder: &Path, arguments: &[&str]) -> Option<(bool, String)> {
-    crate::strangers::table::assert_listed(name);
+    crate::tools::assert_listed(name);
     match Command::new(name)
         .args(arguments)
         .current_dir(folder)

@@ -1,6 +1,5 @@
 //! The engines on the core, beyond the reach of rust-hdl's kernels: lanes, upsets, saved states, forced nets, coverage.
 
-use crate::passed::once_for_this_core;
 use crate::stimulus::stimulus;
 use crate::three_way::{agree, record, Recording, Stimulus};
 use crate::tools;
@@ -58,7 +57,6 @@ fn play(engine: &mut dyn Engine, stimulus: &Stimulus, cycles: std::ops::Range<us
 
 #[test]
 fn a_restored_state_goes_on_as_the_saved_one() {
-    once_for_this_core!("gen/bench", "gen/area");
     let design = channel();
     let stimulus = channel_stimulus(&design, 3000);
     let mut engine = Compiled::new(&design).unwrap();
@@ -74,7 +72,6 @@ fn a_restored_state_goes_on_as_the_saved_one() {
 /// An upset does the same in the compiled engine, in its portable form, and in a lane.
 #[test]
 fn upsets_agree_in_every_engine_and_lane() {
-    once_for_this_core!("gen/bench", "gen/area");
     let design = channel();
     let stimulus = channel_stimulus(&design, 1500);
     let mut native = Compiled::keeping(&design, Keep::Registers).unwrap();
@@ -156,7 +153,6 @@ fn upsets_agree_in_every_engine_and_lane() {
 
 #[test]
 fn a_forced_net_keeps_its_value_until_it_is_let_go() {
-    once_for_this_core!("gen/bench", "gen/area");
     let design = channel();
     let stimulus = channel_stimulus(&design, 2000);
     let forced = vec!["endat_clk".to_owned(), "data_i".into()];
@@ -203,7 +199,6 @@ fn a_forced_net_keeps_its_value_until_it_is_let_go() {
 /// Forcing DATA is the same as driving it.
 #[test]
 fn a_forced_input_is_a_driven_one() {
-    once_for_this_core!("gen/bench", "gen/area");
     let design = channel();
     let mut driven = channel_stimulus(&design, 2500);
     let instruments = Instruments {
@@ -222,7 +217,6 @@ fn a_forced_input_is_a_driven_one() {
 
 #[test]
 fn coverage_is_what_the_registers_did() {
-    once_for_this_core!("gen/bench", "gen/area");
     let design = channel();
     let stimulus = channel_stimulus(&design, 2000);
     let instruments = Instruments {
@@ -290,7 +284,6 @@ fn a_stop_condition_stops() {
 /// The card with models over 10^6 cycles: every engine of this project, lanes, iverilog and Verilator agree.
 #[test]
 fn the_card_agrees_over_many_cycles() {
-    once_for_this_core!("gen/bench", "gen/area");
     let cycles = if tools::is_whole() {
         1_000_000
     } else {

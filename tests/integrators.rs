@@ -209,7 +209,7 @@ fn the_vivado_script_names_bus_clock_reset_and_interrupt() {
         ("[line]\nparts = [\"alignment\", \"double_edge\"]\n", 5),
     ];
     for ((bus, interface, signals), (line, bound)) in rows.into_iter().zip(lines) {
-        let text = crate::bus::text(bus, &format!("[outputs]\nparts = [\"interrupt\"]\n{line}"));
+        let text = crate::bus_card::text(bus, &format!("[outputs]\nparts = [\"interrupt\"]\n{line}"));
         let project = endat_gen::config::parse("card.toml", &text).unwrap();
         let folder = written(&emit(&project).unwrap(), &format!("vivado-{interface}"));
         let told = packaged(&project.name, &folder);

@@ -146,12 +146,12 @@ fn an_open_plug_is_disabled_and_reports_no_more() {
 
 #[test]
 fn a_card_without_own_triggers_has_no_logic_for_them() {
-    let plain = crate::bus::text(endat_hdl::card::bus::HostBus::Apb, "");
+    let plain = crate::bus_card::text(endat_hdl::card::bus::HostBus::Apb, "");
     let project = parse("card.toml", &plain).unwrap();
     assert!(!project.card.own_triggers());
     let has_it = |project| {
         let files = endat_gen::emit(project).unwrap();
-        crate::verilog::has_block(&files, "channel_trigger")
+        crate::emitted::has_block(&files, "channel_trigger")
     };
     assert!(!has_it(&project));
     assert!(has_it(&parse("card.toml", &text("divider = 4\n")).unwrap()));

@@ -3,8 +3,7 @@
 //! The card is the preset's, with a fast UART that pushes a set for each trigger: the set has the cause of every result, and a channel that
 //! is quiet after a fault takes no part in the next ones.
 
-use crate::passed::once_for_this_core;
-use crate::stream::rig::{Set, FRESH, MISSING, TAKEN, VALID};
+use crate::stream_rig::{Set, FRESH, MISSING, TAKEN, VALID};
 use crate::tools;
 use endat_gen::config::{load_preset, Project, PRESETS};
 use endat_hdl::card::uart::BIT_CYCLES_MIN;
@@ -243,7 +242,6 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize) -> Vec<String> {
 /// A preset is a promise: an encoder within its limits gives positions and nothing else. Each limit is at either end twice, or more often.
 #[test]
 fn every_preset_runs_without_a_fault_at_corners_of_its_encoders() {
-    once_for_this_core!("tests/stream");
     let turn = include_str!("../hdl/endat/transaction.rs").len();
     let corners: &[usize] = match tools::is_whole() {
         true => &[0, 3, 5, 6, 9, 10, 12, 15],

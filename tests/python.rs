@@ -1,6 +1,5 @@
 //! The Python package: as a wheel, installed in an environment of its own, its tests, its types.
 
-use crate::passed::once_for_this_core;
 use crate::tools;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -39,7 +38,6 @@ fn wheel_in(folder: &Path) -> PathBuf {
 /// Catches whatever breaks the package: a wheel without a file, a changed library, a promise in the types that is not kept.
 #[test]
 fn the_python_package_is_built_installed_tested_and_typed() {
-    once_for_this_core!(with host, "drivers/python", "gen", "tests/hosts", "Cargo.lock");
     let check = "the Python package is built, installed and tested";
     let is_there =
         tools::require("maturin", check) && MODULES.iter().all(|m| tools::require_python(m, check));

@@ -1,6 +1,5 @@
 //! Maps from the command line.
 
-use crate::passed::once_for_this_core;
 use crate::program::{bad, good, run};
 use crate::tools;
 use serde_json::Value;
@@ -177,7 +176,6 @@ fn eye_takes_no_phase_but_that_of_the_register() {
 /// Catches an option that is read and then forgotten: each changes what one row of jitters comes to.
 #[test]
 fn phase_double_edge_and_majority_reach_the_receiver() {
-    once_for_this_core!("gen/cli/shmoo.rs");
     let passed = |x: &str, y: &str, more: &[&str]| {
         let map = ["shmoo", "--x", x, "--y", y, "--frames", "40", "--json"];
         let map: Value = serde_json::from_str(&good(&[&map[..], more].concat())).unwrap();

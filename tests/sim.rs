@@ -1,6 +1,5 @@
 //! The bench from the command line: the elaborated channel in every scenario.
 
-use crate::passed::once_for_this_core;
 use crate::program::{bad, good, run, Dir};
 use endat_hdl::endat::channel::{Channel, FixedTimes};
 use endat_hdl::endat::service::program::{steps, Step};
@@ -14,7 +13,6 @@ use std::fs;
 /// The scenarios on the channel as it is elaborated for emission.
 #[test]
 fn the_core_is_sound_in_every_scenario() {
-    once_for_this_core!("gen/cli/sim.rs");
     let list: serde_json::Value =
         serde_json::from_str(&good(&["sim", "--list", "--json"])).unwrap();
     let names: Vec<&str> = list
@@ -102,7 +100,6 @@ fn the_line_of_a_t_format_encoder_can_be_written_and_is_not_drawn() {
 /// Answers to requests with frames of their own, and what the initialisation has sent before the first trigger.
 #[test]
 fn requests_and_steps_are_in_the_report() {
-    once_for_this_core!("gen/cli/sim.rs");
     let rows = |name: &str| -> Vec<serde_json::Value> {
         let report: serde_json::Value =
             serde_json::from_str(&good(&["sim", name, "--json"])).unwrap();

@@ -1,6 +1,5 @@
 //! Channels of one card, each at its own rate, width, delay and mode: none notices the others.
 
-use crate::passed::once_for_this_core;
 use endat_gen::config::load_preset;
 use endat_hdl::{
     card::Card,
@@ -96,7 +95,6 @@ fn pins(engine: &Compiled, with: &[usize]) -> Vec<Vec<u8>> {
 
 #[test]
 fn a_channel_does_the_same_alone_and_among_seven_others() {
-    once_for_this_core!();
     let mut block = Card::new(&config());
     block.connect_all();
     let engine = Compiled::new(&elaborate(&block, "card").unwrap()).unwrap();

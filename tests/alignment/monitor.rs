@@ -1,6 +1,5 @@
 //! The line's words behind the host link of a card: settings, edges, alarms.
 
-use crate::passed::once_for_this_core;
 use endat_hdl::endat::line_delay::mode;
 use endat_hdl::{
     card::Card,
@@ -130,7 +129,6 @@ fn drift_and_jitter_give_alarm_beyond_their_limits() {
 
 #[test]
 fn the_host_chooses_where_the_phase_comes_from() {
-    once_for_this_core!();
     let mut host = Host::new(0, 0);
     host.0.bench.run_for(3 * MS);
     let tracked = host.field("phase", "tracked", 0);

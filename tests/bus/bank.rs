@@ -1,7 +1,7 @@
 //! The bank behind a front that keeps no promise: whatever comes, the ring of configuration words comes home.
 
-use super::text;
-use crate::stream::rig::Named;
+use crate::bus_card::text;
+use crate::stream_rig::Named;
 use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::register_bank::{ring_bytes, RegisterBank};

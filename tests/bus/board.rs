@@ -1,6 +1,6 @@
 //! Cards with SPI or the parallel bus on a board: pins, top, and a host at the pins of the top.
 
-use super::text;
+use crate::bus_card::text;
 use crate::constraints::{judge, lint_top, play};
 use endat_gen::config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
@@ -40,7 +40,7 @@ fn the_emission_says_what_it_has() {
             .take_while(|name| *name != "osc_i")
             .collect();
         let is_block = |name: &str| {
-            let card = crate::verilog::name_of(&files);
+            let card = crate::emitted::name_of(&files);
             let list = files
                 .iter()
                 .find(|f| f.path == format!("{card}.f"))

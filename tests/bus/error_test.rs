@@ -1,7 +1,6 @@
 //! Forced errors on the card's own schedule: each is told, positions do not suffer, and a dead error path is found.
 
 use super::{at, frame, sound, text, Master};
-use crate::passed::once_for_this_core;
 use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::service::map::{control, force, state};
@@ -85,7 +84,6 @@ fn each_error_is_forced_in_turn_and_no_trigger_sees_it() {
 /// Catches a schedule that waits for a trigger for ever, and one that does not end.
 #[test]
 fn without_triggers_it_goes_on_and_zero_stops_it() {
-    once_for_this_core!();
     let mut master = card(sound(0, 29));
     frame(&mut master);
     schedule(&mut master, 1);
@@ -108,7 +106,6 @@ fn without_triggers_it_goes_on_and_zero_stops_it() {
 /// error path that does not tell.
 #[test]
 fn an_error_that_is_not_told_raises_the_alarm_until_it_is_cleared() {
-    once_for_this_core!();
     // Frames: the one that measures, the trigger's, then CRC, and F1.
     let alarm = Defect::ErrorBits { f1: true, f2: true };
     let mut master = card(sound(0, 29).defect(3, alarm));
@@ -130,7 +127,6 @@ fn an_error_that_is_not_told_raises_the_alarm_until_it_is_cleared() {
 /// Catches a schedule that takes the host's forced errors away, or a request's frame for its own.
 #[test]
 fn the_host_keeps_its_requests_and_its_own_forced_errors() {
-    once_for_this_core!();
     let mut master = card(sound(0, 29));
     frame(&mut master);
     schedule(&mut master, 1);

@@ -1,7 +1,6 @@
 //! The card behind a bus: masters of each bus on a bench with encoders, the same claims for every front.
 
 mod bank;
-mod board;
 mod claims;
 mod cocotb;
 mod configuration;
@@ -17,6 +16,7 @@ pub mod spi;
 mod three_ways;
 mod uart;
 
+use crate::bus_card::text;
 use endat_gen::config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CardConfig;
@@ -36,16 +36,6 @@ pub const WORD_BUSES: [HostBus; 4] = [
     HostBus::AxiLite,
     HostBus::AhbLite,
 ];
-
-/// A configuration of two channels with a bus.
-pub fn text(bus: HostBus, more: &str) -> String {
-    let name = bus.name();
-    format!(
-        "name = \"{name}_card\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 3_125_000\n\
-         [[channel]]\nposition_bits = 29\ncommand = \"111000\"\n[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n\
-         [trigger]\nsample_hz = 10_000\nsources = [\"register\"]\n[host]\nbus = \"{name}\"\n{more}"
-    )
-}
 
 /// Address of a word.
 pub fn at(block: &Block, name: &str, channel: usize) -> u16 {

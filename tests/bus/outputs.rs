@@ -1,7 +1,7 @@
 //! Outputs to logic and to a processor in the same device: cropped position, error, interrupt.
 
 use super::{sound, text, Master};
-use crate::stream::rig::Named;
+use crate::stream_rig::Named;
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;

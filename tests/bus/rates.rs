@@ -1,7 +1,6 @@
 //! A driver that changes the rate of the clock while the card is running, over the bus.
 
 use super::Master;
-use crate::passed::once_for_this_core;
 use endat_gen::config::load_preset;
 use endat_hdl::endat::channel::CALIBRATION_FRAMES;
 use endat_hdl::regs::{Block, CARD, CHANNEL_CONFIG, RESULT};
@@ -25,7 +24,6 @@ const RATES: [(u64, u32); 7] = [
 /// Catches a period that does not reach the clock, and a channel that another one's rate disturbs.
 #[test]
 fn seven_rates_at_run_time_and_two_of_them_at_once() {
-    once_for_this_core!();
     let project = load_preset("artinchip_endat_if").unwrap();
     let mut master = Master::with_widths(&project, &[25, 25]);
     let system_hz = project.card.system_hz;

@@ -2,7 +2,6 @@
 
 use super::spi::crc16;
 use super::{at, frame, sound, text, Master, WORD_BUSES};
-use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use crate::tools::{self, require};
 use endat_gen::config::parse;
@@ -96,7 +95,6 @@ fn second_told(answer: &[u8], channel: usize) -> Vec<u32> {
 /// Catches a word in another's place, additional data of another frame, a count that stands still, a check sum over something else.
 #[test]
 fn both_controllers_read_the_same() {
-    once_for_this_core!();
     for bus in WORD_BUSES {
         for (more, has_infos) in [(SECOND, false), (WITH_INFOS, true)] {
             let mut master = card(bus, more);

@@ -1,7 +1,6 @@
 //! A second receiver on the same samples: it agrees where nothing is upset, and tells where something is.
 
 use super::{at, frame, Master, WORD_BUSES};
-use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use crate::tools::is_whole;
 use endat_hdl::card::bus::HostBus;
@@ -75,7 +74,6 @@ fn counted(campaign: &dyn Campaign) -> Tally {
 /// Catches a difference that noise, a torn wire or a plug makes between the receivers: such a frame would be told as upset.
 #[test]
 fn no_fault_of_the_line_makes_the_receivers_differ() {
-    once_for_this_core!();
     let tally = counted(&Faults::new(&[Port::SecondReceiver], 23, 5).unwrap());
     let class = |name: &str| tally.count(|row| row.class == name);
     assert!(class("detected") > 3_000 && class("masked") > 500);
@@ -86,7 +84,6 @@ fn no_fault_of_the_line_makes_the_receivers_differ() {
 /// Catches a comparison that does not look at all of an answer, or not to the end.
 #[test]
 fn upsets_of_either_receiver_are_told() {
-    once_for_this_core!();
     let of = |port, only: &str| {
         let moments = if is_whole() { 24 } else { 8 };
         let draw = Draw::Grid { moments };

@@ -1,7 +1,6 @@
 //! The card behind SPI, with a host that knows nothing but the frames of the page.
 
 use super::Master;
-use crate::passed::once_for_this_core;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::{words, CARD, CARD_CONFIG, ID, RESULT};
 use std::collections::BTreeMap;
@@ -260,7 +259,6 @@ fn eight_channels_are_read_in_time() {
 /// check sum is right, and the ring stays what it was.
 #[test]
 fn a_read_at_once_after_a_configuration_write_leaves_the_ring_as_it_is() {
-    once_for_this_core!();
     const LEGAL: &[u64] = &[HALF];
     const TOO_FAST: [&[u64]; 2] = [&[3, 3, 3, 3, 3, 3, 3, 4], &[3]];
     let channel = "[[channel]]\nposition_bits = 25\ncommand = \"111000\"\n".repeat(6);

@@ -1,7 +1,6 @@
 //! Kernels, engines and emitted Verilog of each front's card agree on a random stimulus, with the bus asked all the time.
 
-use super::text;
-use crate::passed::once_for_this_core;
+use crate::bus_card::text;
 use crate::three_way::{three_way, Stimulus};
 use crate::tools::third;
 use endat_gen::config::parse;
@@ -166,7 +165,6 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
 
 #[test]
 fn every_front_agrees() {
-    once_for_this_core!();
     // The bare port is one of the blocks that have claims of their own.
     let has_front = |bus: &HostBus| ![HostBus::Uart, HostBus::Bare].contains(bus);
     let buses: Vec<HostBus> = HostBus::ALL.into_iter().filter(has_front).collect();

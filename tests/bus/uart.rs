@@ -1,7 +1,6 @@
 //! The card with a UART: what a host sends back to back is written, on the largest ring and the fastest line, too.
 
-use super::text;
-use crate::passed::once_for_this_core;
+use crate::bus_card::text;
 use crate::tools::third;
 use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;
@@ -110,7 +109,6 @@ fn usual_bit_cycles() -> BTreeSet<u64> {
 /// 8 channels at 8 cycles a bit: a turn of the ring takes 115 cycles, a byte 80.
 #[test]
 fn words_back_to_back_are_written_at_every_rate_and_to_every_number_of_channels() {
-    once_for_this_core!();
     let rates: Vec<u64> = usual_bit_cycles().into_iter().collect();
     assert!(
         rates.contains(&BIT_CYCLES_MIN) && rates.len() > 10,

@@ -1,7 +1,6 @@
 //! Campaigns that count: parts, what they find, the page of their results.
 
 use super::run;
-use crate::passed::once_for_this_core;
 use crate::tools::third;
 use endat_gen::campaign::budget;
 use endat_gen::campaign::card::{CardSubject, CardUpsets};
@@ -31,7 +30,6 @@ fn done(folder: &Path, arguments: &[&str], out: &str) -> Vec<u8> {
 /// Each campaign is cut where its batches are not, so every case has other neighbours.
 #[test]
 fn any_split_gives_byte_for_byte_what_one_run_gives_and_a_lost_part_is_run_again_alone() {
-    once_for_this_core!("gen/campaign", "campaigns/results");
     let folder = crate::tools::folder("campaign_parts");
     let campaigns = [
         &["upsets", "--subject", "port_all", "--cases", "700"][..],
@@ -130,7 +128,6 @@ fn upsets(port: Port, draw: Draw, only: &str) -> Tally {
 /// Catches registers that a campaign forgets, those on the falling edge among them.
 #[test]
 fn every_flip_flop_of_every_port_is_inverted_in_every_kind_of_frame() {
-    once_for_this_core!("gen/campaign", "campaigns/results");
     for port in Port::ALL {
         let engine = Lanes::new(&port.design().unwrap(), Keep::Registers, LaneWords::Two).unwrap();
         let flops: usize = engine.registers().map(|r| engine.width_bits(r)).sum();
@@ -176,7 +173,6 @@ fn card(subject: CardSubject, places: &[&str], moments: u64) -> Tally {
 /// The host must notice what it can, and the judge what it cannot.
 #[test]
 fn upsets_of_the_card_that_must_be_seen_are_seen() {
-    once_for_this_core!("gen/campaign", "campaigns/results");
     let (rings, time, held) = (
         ["core.registers_1.ring.w2", "core.bank.ring.w1"],
         "core.timebase.cycles",
@@ -200,7 +196,6 @@ fn upsets_of_the_card_that_must_be_seen_are_seen() {
 /// what does not fit, or that refuses what is right: then a case without a flip would be told, which the campaign itself refuses.
 #[test]
 fn the_second_controller_of_a_card_is_told_of_upsets_on_its_way() {
-    once_for_this_core!("gen/campaign", "campaigns/results");
     let places = [
         "core.second_0.",
         "core.port_1.channel_0.second_0.receiver.crc_bits",
@@ -218,7 +213,6 @@ fn the_second_controller_of_a_card_is_told_of_upsets_on_its_way() {
 /// that waits for minutes because the word that says how long was upset.
 #[test]
 fn neither_the_link_nor_a_slower_clock_nor_a_service_stands_for_ever() {
-    once_for_this_core!("gen/campaign", "campaigns/results");
     let service = "core.port_0.served_0.seen_17";
     let places = [
         "bridge.byte_ready",
@@ -238,7 +232,6 @@ fn neither_the_link_nor_a_slower_clock_nor_a_service_stands_for_ever() {
 /// The budgets that are asserted hold in a small part of each campaign.
 #[test]
 fn a_quick_run_of_each_campaign_keeps_its_budgets() {
-    once_for_this_core!("gen/campaign", "campaigns/results");
     for campaign in third(&CAMPAIGNS, PAGE.len()) {
         let outcome = run(&["campaign", campaign, "--quick"]);
         assert_eq!(outcome.exit_code, 0, "{}", outcome.stdout);
@@ -295,7 +288,6 @@ fn a_card_with_every_monitor_keeps_what_it_promises() {
 /// Some of the cases again: their rows must be the committed ones.
 #[test]
 fn the_results_are_those_of_this_core() {
-    once_for_this_core!("gen/campaign", "campaigns/results");
     let Part {
         identity,
         tally: all,

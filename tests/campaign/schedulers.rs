@@ -1,6 +1,5 @@
 //! The files for schedulers that exist, run with them: GNU parallel, and a Slurm of one node.
 
-use crate::passed::once_for_this_core;
 use crate::tools;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -203,7 +202,6 @@ fn until(longest: Duration, is_so: impl Fn() -> bool) -> bool {
 
 #[test]
 fn a_slurm_array_job_runs_the_parts_and_a_lost_one_again() {
-    once_for_this_core!("gen/campaign", "gen/cli/campaign", "campaigns/slurm.sh");
     let check = "the campaign with Slurm";
     if !["slurmctld", "slurmd", "sbatch", "munged"]
         .iter()

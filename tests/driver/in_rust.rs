@@ -3,7 +3,6 @@
 use super::everything;
 use super::rig::{self, Rig, ALL_PARTS, WIDTHS};
 use super::world::World;
-use crate::passed::once_for_this_core;
 use crate::tools::third;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
@@ -347,20 +346,17 @@ fn words(bus: HostBus, more: &str) -> Bench<World> {
 
 #[test]
 fn everything_works_over_axi_lite() {
-    once_for_this_core!(with host, "tests/bus");
     words(HostBus::AxiLite, &everything()).journey();
 }
 
 #[test]
 fn everything_works_over_spi() {
-    once_for_this_core!(with host, "tests/bus");
     let world = World::new(Rig::new(HostBus::Spi, &everything()));
     Bench::new(world.clone(), Spi::new(world)).journey();
 }
 
 #[test]
 fn position_parameter_and_plug_over_every_other_bus() {
-    once_for_this_core!(with host, "tests/bus");
     use HostBus::{Apb, Parallel as Pins, Uart as Serial, Wishbone};
     let driver = include_str!("../../drivers/rust/card.rs");
     for &bus in third(&[Apb, Wishbone, Pins, Serial], driver.len()) {
@@ -396,7 +392,6 @@ fn a_card_without_parts_says_which_one_is_missing() {
 
 #[test]
 fn an_encoder_that_never_answers_is_told_with_its_step() {
-    once_for_this_core!(with host, "tests/bus");
     let project = parse("card.toml", &rig::text(HostBus::Apb, ALL_PARTS)).unwrap();
     let encoder = |n| match n {
         1 => rig::encoder(n).defects(0..=u64::MAX, Defect::NoStartBit),
@@ -415,7 +410,6 @@ fn an_encoder_that_never_answers_is_told_with_its_step() {
 
 #[test]
 fn slow_reads_are_of_one_moment() {
-    once_for_this_core!(with host, "tests/bus");
     words(HostBus::Apb, ALL_PARTS).torn();
     let world = World::new(Rig::new(HostBus::Parallel, ALL_PARTS));
     Bench::new(world.clone(), Parallel::new(world)).torn();
@@ -424,7 +418,6 @@ fn slow_reads_are_of_one_moment() {
 /// Good positions only, while one of some frames is disturbed.
 #[test]
 fn noise_on_spi_spoils_nothing() {
-    once_for_this_core!(with host, "tests/bus");
     let world = World::new(Rig::new(HostBus::Spi, ALL_PARTS).noise(20));
     let mut spi = Spi::new(world.clone());
     spi.tries = 8;

@@ -7,7 +7,7 @@ mod ssi;
 mod t_format;
 mod world;
 
-use crate::passed::{once_for_this_core, Check};
+use crate::passed::Check;
 use crate::program::{self, bad, begun, good, Dir};
 use crate::tools;
 use endat_gen::config::{parse, Project};
@@ -171,7 +171,6 @@ fn write_header(folder: &Path) {
 
 #[test]
 fn the_program_of_the_page_goes_from_power_up_over_a_plug_to_a_position() {
-    once_for_this_core!(with host, "drivers/c", "tests/bus", "docs/driver.md");
     Rig::of(card_of_the_page()).run("page");
 }
 
@@ -350,19 +349,16 @@ fn everything() -> String {
 
 #[test]
 fn everything_works_over_axi_lite() {
-    once_for_this_core!(with host, "drivers/c", "tests/bus");
     Rig::new(HostBus::AxiLite, &everything()).run("journey");
 }
 
 #[test]
 fn everything_works_over_spi() {
-    once_for_this_core!(with host, "drivers/c", "tests/bus");
     Rig::new(HostBus::Spi, &everything()).run("journey");
 }
 
 #[test]
 fn an_encoder_that_never_answers_is_told_with_its_step() {
-    once_for_this_core!(with host, "drivers/c", "tests/bus");
     let project = parse("card.toml", &rig::text(HostBus::Apb, ALL_PARTS)).unwrap();
     let encoder = |n| match n {
         1 => rig::encoder(n).defects(0..=u64::MAX, Defect::NoStartBit),
@@ -373,7 +369,6 @@ fn an_encoder_that_never_answers_is_told_with_its_step() {
 
 #[test]
 fn position_parameter_and_plug_over_every_other_bus() {
-    once_for_this_core!(with host, "drivers/c", "tests/bus");
     let buses = [
         HostBus::Apb,
         HostBus::Wishbone,
@@ -394,14 +389,12 @@ fn a_card_without_parts_says_which_one_is_missing() {
 /// Catches words of two results in one moment where reads are slow, and a hold that is not given back.
 #[test]
 fn slow_reads_are_of_one_moment() {
-    once_for_this_core!(with host, "drivers/c", "tests/bus");
     Rig::new(HostBus::Apb, ALL_PARTS).run("torn");
     Rig::new(HostBus::Parallel, ALL_PARTS).run("torn");
 }
 
 #[test]
 fn noise_on_spi_spoils_nothing() {
-    once_for_this_core!(with host, "drivers/c", "tests/bus");
     let mut rig = Rig::new(HostBus::Spi, ALL_PARTS).noise(20);
     rig.run("noisy");
     assert!(rig.flipped > 50 || compiled().is_none(), "{}", rig.flipped);

@@ -1,6 +1,5 @@
 //! The real core, three ways, under stimulus that wanders through as many states as it can without an encoder.
 
-use crate::passed::once_for_this_core;
 use crate::stimulus::random_stimulus;
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::load_preset;
@@ -46,13 +45,11 @@ pub fn random_program(seed: u64) -> Vec<u32> {
 
 #[test]
 fn a_channel_agrees() {
-    once_for_this_core!("design/tests");
     channel_agrees("channel", Features::default());
 }
 
 #[test]
 fn a_channel_with_all_features_agrees() {
-    once_for_this_core!("design/tests");
     channel_agrees("channel_all", Features::PROTOCOL);
 }
 
@@ -139,7 +136,6 @@ fn channel_agrees(name: &str, features: Features) {
 
 #[test]
 fn the_card_agrees() {
-    once_for_this_core!("gen/bench");
     let project = load_preset("s6_two_channel").unwrap();
     let mut block = Card::new(&project.card);
     block.connect_all();
@@ -169,13 +165,11 @@ fn the_card_agrees() {
 /// A random program, one word in eight of which goes to another place, with a host that reads and writes.
 #[test]
 fn a_sequencer_agrees() {
-    once_for_this_core!("design/tests");
     sequencer_agrees(false);
 }
 
 #[test]
 fn a_shared_sequencer_agrees() {
-    once_for_this_core!("design/tests");
     sequencer_agrees(true);
 }
 

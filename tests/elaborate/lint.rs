@@ -4,7 +4,7 @@
 mod clean;
 
 use super::core::random_program;
-use crate::passed::{once_for_this_core, Check};
+use crate::passed::Check;
 use crate::tools;
 use clean::{elaborated, simulators_are_content, write, yosys_is_content};
 use endat_gen::area;
@@ -59,7 +59,6 @@ fn verilator_and_iverilog_have_nothing_to_say() {
 
 #[test]
 fn yosys_finds_neither_problems_nor_latches() {
-    once_for_this_core!();
     designs().iter().for_each(yosys_is_content);
 }
 

@@ -1,7 +1,6 @@
 //! The virtual card of every bus: the host's words go over the pins of that bus, and everything that the host can do is done.
 
 use super::{card_of, found, SERVICE};
-use crate::passed::once_for_this_core;
 use endat_gen::config::{parse, parse_any, preset, Configuration, Project};
 use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
 use endat_hdl::card::bus::HostBus;
@@ -36,7 +35,6 @@ fn project(bus: HostBus, system_hz: u64) -> Project {
 /// Catches a controller that is wrong at the pins, words in another order, results of two moments, and a stream that loses frames.
 #[test]
 fn a_host_does_over_every_bus_what_it_does_over_a_uart() {
-    once_for_this_core!(with host, "tests/hosts");
     for (bus, system_hz) in BUSES.into_iter().zip([16, 20, 24, 32, 48]) {
         let mut card = found(&project(bus, system_hz * 1_000_000));
         assert_eq!(card.bridge().read(0, 1).unwrap(), [ID], "{bus:?}");

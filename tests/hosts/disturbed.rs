@@ -1,7 +1,6 @@
 //! A link that loses, adds and changes bytes, and one that is unplugged.
 
 use super::{card_of, found, quick, SERVICE};
-use crate::passed::once_for_this_core;
 use endat_gen::virtual_card::VirtualCard;
 use endat_host::registers::Place;
 use endat_host::{Bridge, Card, HostError, Transport};
@@ -66,7 +65,6 @@ impl Transport for Disturbed {
 /// Catches a bridge that hangs, or gives words of another command: whatever byte is lost or added, the next reads are right.
 #[test]
 fn after_a_lost_or_added_byte_the_words_are_right_again() {
-    once_for_this_core!(with host);
     let card = card_of(&quick("s6_two_channel"));
     let link = Disturbed {
         card,

@@ -1,7 +1,6 @@
 //! A card with few system clocks to a bit: positions from two on, additional data, requests and initialisation from four on.
 
 use super::desk::Desk;
-use crate::passed::once_for_this_core;
 use crate::tools::third;
 use endat_gen::config::{parse, Project};
 use endat_gen::virtual_card::VirtualConfig;
@@ -47,7 +46,6 @@ fn check_all_good(desk: &mut Desk, channel: usize, at_least: u32, request_frames
 /// Catches additional data that begin before the position stands in its place, and a supplement that is one pulse off.
 #[test]
 fn everything_works_from_four_system_clocks_to_a_bit_on() {
-    once_for_this_core!(with host);
     let all = [
         (64_000_000, 16_000_000, 0.5),
         (64_000_000, 16_000_000, 20.0),
@@ -112,7 +110,6 @@ fn everything_works_from_four_system_clocks_to_a_bit_on() {
 
 #[test]
 fn positions_are_right_with_two_system_clocks_to_a_bit() {
-    once_for_this_core!(with host);
     for (system_hz, clock_hz, cable_m) in [
         (32_000_000, 16_000_000, 0.5),
         (32_000_000, 16_000_000, 20.0),
@@ -153,7 +150,6 @@ fn fewer_clocks_are_refused_with_what_would_do() {
 /// A host may write a period that no configuration has: nothing is sent, so that no wrong position comes.
 #[test]
 fn a_period_that_is_too_short_for_additional_data_gives_no_wrong_position() {
-    once_for_this_core!(with host);
     let text = text(64_000_000, 16_000_000, DOUBLE_EDGE, SERVICE);
     let project = parse("few.toml", &text).unwrap();
     let mut desk = desk(&project, 5.0);

@@ -78,7 +78,7 @@ const AXI4_LITE: [&str; 19] = [
 
 /// What the script of a card tells Platform Designer: files and top, then a line for each port. And the top's module.
 fn component(bus: HostBus) -> (String, String) {
-    let text = crate::bus::text(bus, "[outputs]\nparts = [\"interrupt\"]\n");
+    let text = crate::bus_card::text(bus, "[outputs]\nparts = [\"interrupt\"]\n");
     let project = endat_gen::config::parse("card.toml", &text).unwrap();
     let folder = written(
         &emit(&project).unwrap(),
@@ -158,7 +158,7 @@ fn module_ports(module: &str) -> BTreeSet<String> {
 /// Catches a wrapper that leaves a port of the card open, crosses two, or of which a tool warns, in both languages.
 #[test]
 fn the_wrapper_for_platform_designer_is_elaborated_and_clean() {
-    let text = crate::bus::text(HostBus::AxiLite, "");
+    let text = crate::bus_card::text(HostBus::AxiLite, "");
     let project = endat_gen::config::parse("card.toml", &text).unwrap();
     let check = "wrapper for Platform Designer";
     if !require("iverilog", check) || !require("verilator", check) || !require("ghdl", check) {

@@ -1,7 +1,7 @@
 //! FuseSoC: several cores in one design, what a target's exit code is worth, and what the targets hand to the tools.
 
 use super::{preset, seen, written};
-use crate::bus::text;
+use crate::bus_card::text;
 use crate::tools::{folder, require, require_all, run};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::parse;

@@ -1,7 +1,7 @@
 //! The IP-XACT component, read back.
 
 use super::written;
-use crate::bus::text;
+use crate::bus_card::text;
 use crate::tools::{require, run};
 use endat_gen::config::parse;
 use endat_gen::emit;

@@ -37,7 +37,7 @@ const USUAL: Setup = Setup {
 
 /// What came of it, and the constraints that it wrote.
 fn played(setup: &Setup, name: &str) -> (bool, String, String) {
-    let text = crate::bus::text(HostBus::AxiLite, setup.more);
+    let text = crate::bus_card::text(HostBus::AxiLite, setup.more);
     let project = parse("card.toml", &text).unwrap();
     let folder = written(&emit_in(&project, setup.language).unwrap(), name);
     let instance = fs::read_to_string(folder.join("axi_lite_card_instance.vho")).unwrap();
@@ -168,8 +168,8 @@ fn the_block_design_has_the_registers_where_the_map_has_them() {
         is_good && told.contains("address 0x40002000 8192"),
         "{told}"
     );
-    let out_of_reach = crate::bus::text(HostBus::AxiLite, "base_address = 0x8000_0000\n");
-    let others = crate::bus::text(HostBus::Wishbone, "");
+    let out_of_reach = crate::bus_card::text(HostBus::AxiLite, "base_address = 0x8000_0000\n");
+    let others = crate::bus_card::text(HostBus::Wishbone, "");
     for text in [out_of_reach, others] {
         let files = emit(&parse("card.toml", &text).unwrap()).unwrap();
         let scripts = files.iter().filter(|file| file.path.ends_with("_zynq.tcl"));

@@ -1,7 +1,6 @@
 //! The service behind the host link of a card.
 
-use super::rig::{quick, times};
-use crate::passed::once_for_this_core;
+use crate::service_rig::{quick, times};
 use endat_hdl::{
     card::Card,
     config::CardConfig,
@@ -57,7 +56,6 @@ impl Host {
 /// An encoder that leaves a frame after 2 us of HIGH never answers at 200 kHz.
 #[test]
 fn an_encoder_that_leaves_a_slow_frame_starts_with_a_faster_calibration_clock() {
-    once_for_this_core!("tests/requests");
     let preset = endat_gen::config::preset("s6_two_channel").unwrap();
     for (hz, starts) in [(200_000, false), (400_000, true)] {
         let key = format!("clock_hz = 3_125_000\ncalibration_hz = {hz}");
@@ -80,7 +78,6 @@ fn an_encoder_that_leaves_a_slow_frame_starts_with_a_faster_calibration_clock() 
 
 #[test]
 fn both_channels_are_initialised_and_take_requests_over_the_host_link() {
-    once_for_this_core!("tests/requests");
     let mut host = Host::new();
     for (channel, width) in [(0, 29), (1, 37)] {
         host.wait_for("state", channel, |s| s & 1 == 1);
@@ -116,7 +113,6 @@ fn both_channels_are_initialised_and_take_requests_over_the_host_link() {
 /// The first service has two channels, the second one only one.
 #[test]
 fn a_third_channel_has_a_service_of_its_own() {
-    once_for_this_core!("tests/requests");
     let mut config = crate::host::card("s6_two_channel_service");
     config.channels.push(config.channels[1].clone());
     let mut host = Host::with(&config, &[RCN_8510, ROQ_437, RCN_8510]);
@@ -149,7 +145,6 @@ fn a_third_channel_has_a_service_of_its_own() {
 /// Two channels that share a service, each with additional data of two codes in turn, a threshold and requests: no end of a frame is missed.
 #[test]
 fn no_frame_is_missed_while_both_channels_are_busy() {
-    once_for_this_core!("tests/requests");
     let mut host = Host::new();
     for channel in [0, 1] {
         host.wait_for("state", channel, |s| s & 1 == 1);

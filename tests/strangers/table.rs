@@ -20,8 +20,6 @@ struct Stranger {
     pip: Option<&'static str>,
     version: &'static str,
     asks: Vec<&'static str>,
-    /// What tests call it: programs that they start and modules that they import.
-    calls: Vec<&'static str>,
     does: &'static str,
     /// `file::function`.
     tests: Vec<&'static str>,
@@ -61,7 +59,6 @@ fn stranger(row: &'static toml::Table) -> Stranger {
         pip,
         version,
         asks: words(row, "asks"),
-        calls: [words(row, "programs"), words(row, "modules")].concat(),
         does: text("does").unwrap(),
         tests: words(row, "tests"),
     }
@@ -78,18 +75,6 @@ fn installed_by_ci(package: &str) -> &'static str {
         "{package}: .ci/run has two versions"
     );
     version.unwrap_or_else(|| panic!("{package}: .ci/run does not install it with =="))
-}
-
-/// Whether the table knows a program or a module that a test asks for.
-///
-/// # Panics
-/// If it does not: nothing foreign is run that the page is silent about.
-pub fn assert_listed(call: &str) {
-    let is_listed = STRANGERS.iter().any(|s| s.calls.contains(&call));
-    assert!(
-        is_listed,
-        "{call}: is run by a test, and is not in tests/strangers/table.toml; add it"
-    );
 }
 
 /// The page.

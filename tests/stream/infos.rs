@@ -1,7 +1,6 @@
 //! Additional data of one frame with its position: in the results, and in the sets of the stream.
 
-use crate::hosts::desk::Desk;
-use crate::passed::once_for_this_core;
+use crate::desk::Desk;
 use endat_driver::AdditionalData as Info;
 use endat_gen::config::{parse, preset, Project};
 use endat_gen::virtual_card::VirtualConfig;
@@ -65,7 +64,6 @@ fn good(info: Info) -> u16 {
 /// Catches a snapshot that takes the position of one frame and the additional data of another one.
 #[test]
 fn position_and_additional_data_of_a_result_are_of_one_frame() {
-    once_for_this_core!(with host);
     // At rest between frames, and one frame after the other with triggers that are lost.
     for period in [10_000, 2_900] {
         let mut desk = desk(&project(&[("start = \"off\"", "start = \"off\"")]));
@@ -114,7 +112,6 @@ fn position_and_additional_data_of_a_result_are_of_one_frame() {
 /// Catches a result that shows what an earlier frame brought, or the frame of a request after it.
 #[test]
 fn a_result_has_no_additional_data_of_another_frame() {
-    once_for_this_core!(with host);
     let mut desk = desk(&project(&[]));
     // One trigger at a time.
     desk.set("card_config.trigger_sources", 4);
@@ -205,7 +202,6 @@ fn streaming() -> Project {
 /// Catches a set that is closed before its additional data are there, and one that mixes two frames.
 #[test]
 fn sets_have_additional_data_1_and_2_of_their_frame() {
-    once_for_this_core!(with host);
     let mut desk = desk(&streaming());
     assert!(desk.card.identity().stream_additional_data);
     push(&mut desk);
@@ -230,7 +226,6 @@ fn sets_have_additional_data_1_and_2_of_their_frame() {
 
 #[test]
 fn sets_tell_additional_data_that_are_missing_or_wrong() {
-    once_for_this_core!(with host);
     let mut desk = desk(&streaming());
     push(&mut desk);
     pushed(&mut desk, 2);

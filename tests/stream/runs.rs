@@ -1,8 +1,7 @@
 //! Positions of running clocks in the stream, each in a set of its own.
 
 use super::infos::{push, pushed};
-use crate::hosts::desk::Desk;
-use crate::passed::once_for_this_core;
+use crate::desk::Desk;
 use endat_gen::config::{parse, preset};
 use endat_gen::virtual_card::VirtualConfig;
 use endat_host::feed::Feed;
@@ -73,7 +72,6 @@ fn check(desk: &mut Desk, channel: usize, run: &[&SampleSet]) -> u64 {
 /// Catches a position that is left out, comes twice or with another's moment, and one in the set of a trigger.
 #[test]
 fn each_position_of_a_running_clock_has_a_set_of_its_own() {
-    once_for_this_core!(with host);
     for additional_data in [false, true] {
         let mut desk = desk([200, 200], additional_data);
         desk.set("service0.continuous", 1);
@@ -110,7 +108,6 @@ fn each_position_of_a_running_clock_has_a_set_of_its_own() {
 /// Catches a set that has one clock's position with another's moment or number, and a loss that nobody is told of.
 #[test]
 fn two_running_clocks_and_triggers_share_the_stream() {
-    once_for_this_core!(with host);
     // Both together would fill it two times over.
     let mut desk = desk([100, 140], false);
     for channel in [0, 1] {
@@ -154,7 +151,6 @@ fn two_running_clocks_and_triggers_share_the_stream() {
 
 #[test]
 fn a_feed_has_a_row_for_each_position_of_a_running_clock() {
-    once_for_this_core!(with host);
     let mut desk = desk([200, 200], false);
     desk.set("service1.continuous", 1);
     desk.run_ms(1);

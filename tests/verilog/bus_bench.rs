@@ -197,7 +197,7 @@ const PARALLEL: &[Mutation] = &[
 /// A card of two channels with everything that leaves it beside the bus.
 fn check(bus: HostBus, mutations: &[Mutation]) {
     let outputs = "[outputs]\nparts = [\"position\", \"interrupt\"]\n";
-    let text = crate::bus::text(bus, outputs).replace("= [\"register\"]", "= [\"pin\", \"timer\"]");
+    let text = crate::bus_card::text(bus, outputs).replace("= [\"register\"]", "= [\"pin\", \"timer\"]");
     let files = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
     check_mutations(&format!("bus-{}", bus.name()), &files, mutations);
 }
@@ -231,7 +231,7 @@ fn bench_behind_the_parallel_bus_passes_only_as_it_stands() {
 #[test]
 fn bench_behind_a_bus_passes_on_a_card_with_both_protocols() {
     let outputs = "[outputs]\nparts = [\"position\", \"interrupt\"]\n";
-    let text = crate::bus::text(HostBus::Apb, outputs);
+    let text = crate::bus_card::text(HostBus::Apb, outputs);
     let second = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n";
     assert!(text.contains(second));
     let text = text.replace(second, "[[channel]]\nprotocol = \"t_format\"\n");

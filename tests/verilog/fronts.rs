@@ -4,7 +4,7 @@
 //! `tests/formal` has the properties; they are put into the flattened module, so that induction can use its registers.
 
 use super::{file_of, is_core, name_of};
-use crate::bus::text;
+use crate::bus_card::text;
 use crate::passed::Check;
 use crate::tools;
 use endat_gen::artifact::Artifact;

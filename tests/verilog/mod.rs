@@ -16,9 +16,8 @@ pub mod testbench;
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, Project, DEFAULT_PRESET};
+pub use crate::emitted::{file_of, has_block, name_of};
 pub use endat_gen::readers::is_core;
-use rtl_design::elaborate::block_name;
-use rtl_design::verilog::file_name;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -47,28 +46,6 @@ pub fn quick_files() -> &'static [Artifact] {
 pub fn preset_files() -> &'static [Artifact] {
     static FILES: OnceLock<Vec<Artifact>> = OnceLock::new();
     FILES.get_or_init(|| endat_gen::emit(&load_preset(DEFAULT_PRESET).unwrap()).unwrap())
-}
-
-/// The name of an emitted card or receiver.
-pub fn name_of(files: &[Artifact]) -> &str {
-    let mut names = files.iter().filter_map(|f| f.path.strip_suffix(".f"));
-    names.next().expect("a list of files")
-}
-
-/// The file of a block of an emitted card; the card's own module has no block's name.
-pub fn file_of(files: &[Artifact], block: &str) -> String {
-    match block {
-        "" => file_name(name_of(files)),
-        _ => file_name(&block_name(name_of(files), block)),
-    }
-}
-
-/// Whether a card has a block, in whatever variants.
-pub fn has_block(files: &[Artifact], block: &str) -> bool {
-    let name = block_name(name_of(files), block);
-    files
-        .iter()
-        .any(|f| is_core(f) && f.path.starts_with(&name))
 }
 
 /// Writes the Verilog files of a card into a folder of its own; the folder, and the names of those of the card itself.

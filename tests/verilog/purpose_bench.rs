@@ -107,7 +107,7 @@ fn card() -> Vec<Artifact> {
 
 /// A card whose clock is slow: the bench waits for milliseconds, each of which costs simulated cycles.
 fn slow(system_hz: &str, more: &str) -> Vec<Artifact> {
-    let text = crate::bus::text(HostBus::Apb, more)
+    let text = crate::bus_card::text(HostBus::Apb, more)
         .replace("100_000_000", system_hz)
         .replace("3_125_000", "2_500_000")
         .replace("= [\"register\"]", "= [\"pin\"]");
@@ -175,7 +175,7 @@ fn without_initial_values(parts: &str) -> Vec<Artifact> {
         "[service]\nparts = [{parts}]\n[line]\nparts = [\"alignment\", \"margin\"]\n\
          [outputs]\nparts = [\"interrupt\"]\n[device]\ninitial_values = false\n"
     );
-    let text = crate::bus::text(HostBus::Wishbone, &more)
+    let text = crate::bus_card::text(HostBus::Wishbone, &more)
         .replace("100_000_000", "12_500_000")
         .replace("= [\"register\"]", "= [\"pin\"]");
     let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();

@@ -1,7 +1,6 @@
 //! An EnDat channel does not know who its neighbours are.
 
 use super::*;
-use crate::passed::once_for_this_core;
 
 /// The pins of EnDat channel `endat` in every cycle of a run with triggers at the pin.
 fn pins(channels: &[&str], endat: usize) -> Vec<[u128; 5]> {
@@ -46,7 +45,6 @@ fn pins(channels: &[&str], endat: usize) -> Vec<[u128; 5]> {
 
 #[test]
 fn an_endat_channel_is_the_same_bit_by_bit_with_any_neighbour() {
-    once_for_this_core!("tests/t_format");
     let alone = pins(&[ENDAT], 0);
     assert!(alone.iter().any(|row| row[4] == 1));
     for (channels, endat) in [(&[ENDAT, T][..], 0), (&[T, ENDAT], 1), (&[T, ENDAT, T], 1)] {

@@ -1,7 +1,6 @@
 //! A port for T-format at work with its encoder: kernels, engines and emitted Verilog agree in every cycle.
 
 use super::shaft;
-use crate::passed::once_for_this_core;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::protocols::t_format::cause;
@@ -98,7 +97,6 @@ fn recorded() -> Stimulus {
 
 #[test]
 fn kernels_engines_and_verilog_agree_on_a_t_format_port() {
-    once_for_this_core!("tests/t_format");
     let design = elaborate(&block(), "encoder_port").unwrap();
     let mut kernel = kernel_engine!(block(); clock;
         in reset, tick_us, timestamp, trigger, calibrate, request_id, field_gap_us;

@@ -1,0 +1,59 @@
+//! The recovery time that is told, with few cycles and places in a bit.
+
+use super::Kind;
+use endat_sim::campaign::{self, Case, RunOptions, Traces};
+use endat_sim::{NS, US};
+
+/// Two cycles, as with more of them in a bit; the place of the last edge; and CLOCK that was held for less than a bit.
+const CYCLES_OFF: u64 = 4;
+
+/// Also where all pulses are sent before the start bit is back, so that CLOCK waits LOW for the answer; and where cells are shorter than the
+/// way of a sample through the receiver.
+#[test]
+fn the_recovery_time_is_that_of_the_encoder() {
+    let tm = 15 * US;
+    let mut cases = vec![];
+    for kind in [
+        Kind::single(4),
+        Kind::single(8),
+        Kind::double(2),
+        Kind::double(3),
+        Kind::double(4),
+    ] {
+        for bits in [1, 13, 25] {
+            for delay in 0..24 {
+                let mut case = kind.case(0.0, f64::from(delay) * 0.9, 3, cases.len() as u64);
+                case.settings.position_bits = bits;
+                case.encoder.position_bits = bits;
+                case.encoder.tm = tm..=tm;
+                cases.push(case);
+            }
+        }
+    }
+    let judge = |case: &Case, traces: &Traces<'_>| {
+        // DATA rises a little after the last clock edge, and falls at the end of tm.
+        let want = (tm - case.encoder.clock_to_data) * case.system_hz / 1_000_000_000_000;
+        // The last result tells that of the frame before it.
+        let got = traces.results.last().map_or(0, |r| r.recovery_cycles);
+        (got.abs_diff(want) > CYCLES_OFF).then(|| {
+            format!(
+                "{got} cycles, not {want}: {} Hz, {} bits, {} ns",
+                case.system_hz,
+                case.settings.position_bits,
+                case.line.data_in.transceivers / NS
+            )
+        })
+    };
+    let options = RunOptions {
+        samples: false,
+        ..RunOptions::default()
+    };
+    let outcomes = campaign::run(&cases, options, judge, |_| {}).expect("a design");
+    let wrong: Vec<_> = outcomes.into_iter().filter_map(|o| o.verdict).collect();
+    assert!(
+        wrong.is_empty(),
+        "{} of {}: {wrong:#?}",
+        wrong.len(),
+        cases.len()
+    );
+}

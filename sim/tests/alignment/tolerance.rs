@@ -1,0 +1,144 @@
+//! How much jitter the phase stands: against the ideal `0.5 - 1 / places`.
+
+use super::{run, Count, Kind};
+use crate::tools::{is_whole, third};
+use endat_hdl::endat::line_delay::mode;
+use endat_sim::campaign::Case;
+
+/// What a change of it tries other cases by.
+const PHASE: &str = include_str!("../../../hdl/endat/line_delay.rs");
+
+fn sum(counts: &[Count]) -> Count {
+    counts.iter().fold(Count::default(), |sum, c| Count {
+        frames: sum.frames + c.frames,
+        good: sum.good + c.good,
+        wrong: sum.wrong + c.wrong,
+    })
+}
+
+/// Oversampling x jitter x delay: 4025 cells of 12 frames, or a third of the delays.
+#[test]
+fn the_area_of_tolerance_is_that_of_an_ideal_receiver() {
+    let jitters = [0.0, 0.1, 0.2, 0.3, 0.4];
+    let kinds = [4, 6, 8, 16, 32].map(Kind::single);
+    let eighths: Vec<u32> = (0..=160).collect();
+    let eighths: Vec<&u32> = third(&eighths, PHASE.len()).collect();
+    let mut cases: Vec<Case> = vec![];
+    for kind in kinds {
+        for jitter in jitters {
+            for eighth in &eighths {
+                let seed = cases.len() as u64;
+                cases.push(kind.case(jitter, f64::from(**eighth) / 8.0, 12, seed));
+            }
+        }
+    }
+    assert!(cases.len() == 4025 || !is_whole() && cases.len() > 1_300);
+    let counts = run(&cases, 0);
+    let is_good = |c: &Count| c.good == c.frames;
+    let passed = counts.iter().filter(|c| is_good(c)).count();
+    let part = passed as f64 / counts.len() as f64;
+    for (row, cells) in counts.chunks(eighths.len()).enumerate() {
+        let good = cells.iter().filter(|c| is_good(c)).count();
+        let (kind, jitter) = (kinds[row / jitters.len()], jitters[row % jitters.len()]);
+        println!(
+            "{:2} places, jitter {jitter}: {good} of {}",
+            kind.places(),
+            cells.len()
+        );
+    }
+    assert!(part >= 0.82, "{passed} of {} cells, {part:.3}", cases.len());
+    // What passes the CRC by chance is one bad frame in 32 at most, and there are few bad ones in a cell.
+    let all = sum(&counts);
+    let bad = all.frames - all.good;
+    assert!(all.wrong * 16 <= bad, "{all:?}");
+    println!("{passed} of {} cells, {all:?}", cases.len());
+}
+
+/// The largest jitter at which every frame is good, whatever the delay's part of a cycle is, as a part of the ideal one.
+fn reached(kind: Kind, phase_mode: u64, percent: &[u32]) -> f64 {
+    let parts: Vec<f64> = percent.iter().map(|p| f64::from(*p) / 100.0).collect();
+    let delays = 6;
+    let mut cases = vec![];
+    for part in &parts {
+        for delay in 0..delays {
+            let delay_bits = 2.0 + f64::from(delay) / f64::from(delays) / kind.cycles as f64;
+            let seed = cases.len() as u64;
+            let mut case = kind.case(part * kind.ideal_jitter(), delay_bits, 220, seed);
+            case.settings.phase_mode = phase_mode;
+            cases.push(case);
+        }
+    }
+    let counts = run(&cases, 120);
+    let cells = counts.chunks(delays as usize);
+    let good = cells.take_while(|cell| cell.iter().all(|c| c.good == c.frames));
+    good.count().checked_sub(1).map_or(0.0, |last| parts[last])
+}
+
+#[test]
+fn tracked_phase_stands_the_jitter_that_an_ideal_receiver_stands() {
+    let kinds = [4, 6, 8, 16, 32].map(Kind::single).into_iter();
+    let kinds: Vec<Kind> = kinds.chain([2, 4, 8].map(Kind::double)).collect();
+    let percent = [80, 90, 95, 98, 100, 102, 104, 106, 108, 110];
+    let mut low = vec![];
+    for &kind in third(&kinds, PHASE.len()) {
+        let tracked = reached(kind, mode::TRACKED, &percent);
+        let ideal = kind.ideal_jitter();
+        println!(
+            "{} cycles, {} places: theory {ideal:.4}, measured {:.4} ({tracked:.2})",
+            kind.cycles,
+            kind.places(),
+            tracked * ideal
+        );
+        if tracked < 0.98 {
+            low.push((kind, tracked));
+        }
+    }
+    assert_eq!(low, []);
+}
+
+/// With the phase of one jittered edge half of it is left; the model of jitter and the judge can tell the difference.
+#[test]
+fn phase_from_the_start_bit_stands_half_of_that() {
+    for &kind in third(&[Kind::single(8), Kind::single(16)], PHASE.len()) {
+        let part = reached(kind, mode::FRAME, &[40, 45, 50, 60, 70, 80]);
+        assert!((0.45..=0.7).contains(&part), "{kind:?}: {part}");
+    }
+}
+
+#[test]
+fn a_bit_of_four_places_is_enough_for_a_hundred_thousand_frames() {
+    for &kind in third(&[Kind::single(4), Kind::double(2)], PHASE.len()) {
+        let case = |seed| kind.case(0.15, 3.0 + seed as f64 / 128.0, 800, seed);
+        let cases: Vec<Case> = (0..128).map(case).collect();
+        let all = sum(&run(&cases, 0));
+        assert!(all.frames >= 100_000);
+        assert_eq!((all.good, all.wrong), (all.frames, 0), "{kind:?}");
+    }
+}
+
+/// Every width, and delays from nothing to 8 us: exactly the pulses that the encoder needs, while tcal moves the start bit about.
+#[test]
+fn pulses_are_exact_at_every_width_and_delay() {
+    use endat_sim::US;
+    let mut cases = vec![];
+    let kinds = [Kind::single(4), Kind::single(8), Kind::double(2)];
+    for &kind in third(&kinds, PHASE.len()) {
+        for bits in 1..=48 {
+            for delay in 0..12 {
+                let seed = cases.len() as u64;
+                let bits_of_delay = f64::from(delay) * 7.9e6 / 11.0 / kind.bit();
+                let mut case = kind.case(0.1, bits_of_delay, 3, seed);
+                case.settings.position_bits = bits;
+                case.encoder.position_bits = bits;
+                case.encoder.tcal = (1 + seed % 9) * US + seed * 7_919 % US;
+                cases.push(case);
+            }
+        }
+    }
+    let counts = run(&cases, 0);
+    for (case, count) in cases.iter().zip(&counts) {
+        let delay = case.line.data_in.transceivers;
+        let what = (case.system_hz, case.settings.position_bits, delay);
+        assert_eq!(count.good, count.frames, "{what:?}");
+    }
+}

@@ -1,0 +1,14 @@
+//! The EnDat port at its encoder: positions, the phase of the samples, requests and the service.
+
+mod alignment;
+mod position;
+mod requests;
+mod service;
+
+// The tests of design/ are made of these, too.
+#[path = "../../design/tests/ghdl.rs"]
+mod ghdl;
+#[path = "../../design/tests/three_way.rs"]
+mod three_way;
+#[path = "../../design/tests/tools.rs"]
+mod tools;

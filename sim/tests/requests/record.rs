@@ -1,0 +1,141 @@
+//! The record of additional data finds the truth again after any frame, whatever recovery time, calculation time and clock.
+
+use super::lanes::*;
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::ModeCommand::{PositionSelectMemory, SendPositionAddInfo};
+use endat_sim::{
+    bench::ChannelSettings,
+    encoder::{Defect, EncoderConfig},
+    Time, NS, US,
+};
+
+/// A frame that measures the delay, two good ones, two selections: the next one has the mishap.
+const MISHAP_FRAME: u64 = 5;
+/// Triggers after the mishap that may bring a fault.
+const TRIGGERS: usize = 2;
+/// Long and short recovery times, either side of half a period of the calibration clock.
+const RECOVERIES: [Time; 11] = [
+    1_250 * NS,
+    1_300 * NS,
+    2_000 * NS,
+    2_300 * NS,
+    2_500 * NS,
+    2_600 * NS,
+    3_750 * NS,
+    5 * US,
+    10 * US,
+    20 * US,
+    30 * US,
+];
+/// Below 10 us there are recovery times only with a clock of 1 MHz or more.
+const LONG_RECOVERY: Time = 10 * US;
+
+struct Story {
+    encoder: EncoderConfig,
+    endat_hz: u64,
+    what: String,
+}
+
+/// Every recovery time with every calculation time and rate, and these mishaps.
+fn stories(defects: &[Defect]) -> Vec<Story> {
+    let mut stories = vec![];
+    for tm in RECOVERIES {
+        for tcal in [US, 5 * US, 12 * US] {
+            for endat_hz in [200_000, 500_000, 1_000_000, 2_000_000, 4_000_000] {
+                if tm < LONG_RECOVERY && endat_hz < 1_000_000 {
+                    continue;
+                }
+                for defect in defects {
+                    let mut encoder = encoder().defect(MISHAP_FRAME, defect.clone());
+                    encoder.tm = tm..=tm;
+                    encoder.tcal = tcal;
+                    let what = format!("tm {tm} tcal {tcal} at {endat_hz} Hz: {defect:?}");
+                    stories.push(Story {
+                        encoder,
+                        endat_hz,
+                        what,
+                    });
+                }
+            }
+        }
+    }
+    stories
+}
+
+/// Runs them with these additional data selected; all are well again after the second trigger at the latest.
+fn run(codes: [u8; 2], defects: &[Defect]) {
+    let stories = stories(defects);
+    for stories in stories.chunks(LANES) {
+        let cases: Vec<_> = stories
+            .iter()
+            .map(|s| (s.encoder.clone(), line()))
+            .collect();
+        let mut rig = Rig::on(engine(), &cases);
+        for (lane, story) in stories.iter().enumerate() {
+            let bits = POSITION_BITS;
+            let settings =
+                ChannelSettings::new(SYSTEM_HZ, story.endat_hz, SendPositionAddInfo, bits);
+            rig.bench.configure(lane, &settings);
+        }
+        rig.reset();
+        rig.settle(100);
+        (0..2).for_each(|_| rig.position(1_000));
+        for code in codes {
+            rig.put(PositionSelectMemory, code, 0);
+            rig.position(1_000);
+        }
+        for (lane, story) in stories.iter().enumerate() {
+            let result = rig.bench.results(lane).last().expect("a result");
+            let good = (result.cause, result.fresh) == (cause::NONE, true);
+            assert!(good, "{} {result:?}", story.what);
+        }
+        rig.position(1_000);
+        rig.run_for(40 * US);
+        rig.settle(1_000);
+        let (lost, _) = rig.recovered(TRIGGERS, &|lane| stories[lane].what.clone());
+        let (count, of) = (lost.len(), stories.len());
+        assert!(lost.is_empty(), "{count} of {of}, the first: {}", lost[0]);
+    }
+}
+
+fn stuck_low(bits: &[u32]) -> Vec<Defect> {
+    let stuck = |bit: &u32| Defect::StuckFrom {
+        bit: *bit,
+        level: false,
+    };
+    bits.iter().map(stuck).collect()
+}
+
+/// DATA LOW in an answer looks as if additional data followed it.
+#[test]
+fn a_frame_of_zeros_teaches_no_additional_data_at_any_recovery_time() {
+    // 0x4F and 0x5F: none is selected.
+    run([0x4F, 0x5F], &stuck_low(&[1, 3, 10, 17, 20, 21]));
+}
+
+/// The encoder has forgotten its selection, and a short recovery time ends before half a period of the calibration clock does.
+#[test]
+fn additional_data_that_are_gone_are_forgotten_at_any_recovery_time() {
+    let lost = Defect::BrownOut {
+        after: 9 * US,
+        length: 3 * US,
+    };
+    let defects = [
+        lost,
+        Defect::StuckFrom {
+            bit: 4,
+            level: true,
+        },
+    ];
+    for codes in [[0x4C, 0x5F], [0x5B, 0x4F], [0x4C, 0x5B]] {
+        run(codes, &defects);
+    }
+}
+
+/// They are there all the time, and what a disturbed frame seems to say about them does not last.
+#[test]
+fn additional_data_that_are_there_are_found_at_any_recovery_time() {
+    for codes in [[0x4C, 0x5F], [0x5B, 0x4F], [0x4C, 0x5B]] {
+        run(codes, &stuck_low(&[2, 18, 21, 22, 40, 51]));
+    }
+}

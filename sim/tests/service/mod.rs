@@ -1,0 +1,12 @@
+//! Requests, health and initialisation by the service of an encoder port, as a host sees them.
+
+mod health;
+mod initialise;
+mod limits;
+mod long_run;
+mod mailbox;
+mod plug;
+mod rig;
+mod three_ways;
+mod upsets;
+mod waiting;

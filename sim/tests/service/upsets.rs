@@ -1,0 +1,134 @@
+//! Upsets of the registers by which service and channel, and host and service, tell each other what there is to do.
+
+use super::plug::{encoder, ready, Hosts, PERIOD, STUCK_MS};
+use crate::requests::lanes::{self, Rig, LANES};
+use endat_hdl::endat::service::map::{control, request_state, word};
+use endat_hdl::protocol::ModeCommand::*;
+use endat_sim::{rng::Rng, Time, MS, US};
+
+/// The registers, with what is inverted in them.
+fn masks() -> Vec<(String, u128)> {
+    let flags = [
+        "has_event",
+        "missed",
+        "event_request",
+        "request_written",
+        "control_written",
+    ];
+    let mut masks: Vec<_> = flags.iter().map(|name| (*name, 1)).collect();
+    masks.extend((1..16).map(|mask| ("out_go", mask)));
+    masks.extend((0..5).map(|bit| ("event_cause", 1 << bit)));
+    let full = |(name, mask): (&str, u128)| (format!("served_0.{name}"), mask);
+    masks.into_iter().map(full).collect()
+}
+
+/// Moments from the host's write to behind the end of the frame that takes the request along.
+const MOMENTS: u64 = 24;
+const SPAN: Time = 240 * US;
+
+#[test]
+fn an_upset_of_a_handshake_loses_a_request_at_most_and_the_next_one_is_fulfilled() {
+    let ready = ready(false);
+    let names: Vec<String> = ready.nets().map(Into::into).collect();
+    let mut rng = Rng::new(7);
+    let mut upsets = vec![];
+    for (name, mask) in masks() {
+        let net = names.iter().position(|n| *n == name).expect("a register");
+        for moment in 0..MOMENTS {
+            let cycles = SPAN * lanes::SYSTEM_HZ / (1_000_000 * US);
+            let cycle = (moment * cycles + rng.in_range(0, cycles)) / MOMENTS;
+            upsets.push((
+                net,
+                mask,
+                cycle,
+                format!("{name} ^ {mask:#b} in cycle {cycle}"),
+            ));
+        }
+    }
+    let mut waiting = vec![];
+    for upsets in upsets.chunks(LANES) {
+        let what: Vec<String> = upsets.iter().map(|u| u.3.clone()).collect();
+        let rig = Rig::on(
+            ready.clone(),
+            &vec![(encoder(), lanes::line()); upsets.len()],
+        );
+        let mut hosts = Hosts {
+            rig,
+            next_trigger: 50 * US,
+        };
+        hosts.run_for(PERIOD);
+        hosts.good(PositionSelectMemory, 0x4C);
+        hosts.request(PositionSelectMemory, 0x4D);
+        let last = upsets.iter().map(|u| u.2).max().unwrap_or(0);
+        for cycle in 0..=last {
+            for (lane, upset) in upsets.iter().enumerate().filter(|(_, u)| u.2 == cycle) {
+                for bit in (0..16).filter(|bit| upset.1 >> bit & 1 == 1) {
+                    hosts.rig.bench.engine().flip(upset.0, bit, lane);
+                }
+            }
+            hosts.tick();
+        }
+        hosts.run_for(8 * MS);
+        hosts.rest();
+        hosts.assert_never_wrong(&what);
+        hosts.assert_good_positions(&what);
+        let states = hosts.read(word::REQUEST_STATE);
+        let busy = |lane: &usize| states[*lane] as u16 & request_state::BUSY != 0;
+        let open = (0..upsets.len()).filter(busy);
+        waiting.extend(open.map(|lane| what[lane].clone()));
+        let before = hosts.read(word::REQUEST_STATE);
+        hosts.request(PositionSelectMemory, 0x4C);
+        hosts.run_for(MS);
+        let after = hosts.read(word::REQUEST_STATE);
+        for lane in (0..upsets.len()).filter(|lane| !busy(lane)) {
+            let error = after[lane] as u16;
+            let finished = (error, after[lane] >> 16);
+            assert_eq!(finished, (0, (before[lane] >> 16) + 1), "{}", what[lane]);
+        }
+    }
+    assert!(waiting.is_empty(), "{waiting:#?}");
+}
+
+/// Where the program is, or where it returns to, at moments of its main loop's round: some of these jumps end in a loop.
+#[test]
+fn a_program_that_goes_astray_begins_anew() {
+    let ready = ready(false);
+    let names: Vec<String> = ready.nets().map(Into::into).collect();
+    let mut upsets = vec![];
+    for name in ["counter", "link"] {
+        let full = format!("service_0.sequencer.{name}");
+        let net = names.iter().position(|n| *n == full).expect("a register");
+        for bit in 0..11 {
+            for moment in 0..MOMENTS {
+                let cycle = 23 * moment + bit as u64;
+                upsets.push((net, bit, cycle, format!("{name} bit {bit}, cycle {cycle}")));
+            }
+        }
+    }
+    let mut most_starts = 0;
+    for upsets in upsets.chunks(LANES) {
+        let what: Vec<String> = upsets.iter().map(|u| u.3.clone()).collect();
+        let links = vec![(encoder(), lanes::line()); upsets.len()];
+        let mut hosts = Hosts {
+            rig: Rig::on(ready.clone(), &links),
+            next_trigger: 50 * US,
+        };
+        hosts.run_for(PERIOD);
+        hosts.good(PositionSelectMemory, 0x4C);
+        let last = upsets.iter().map(|u| u.2).max().unwrap_or(0);
+        for cycle in 0..=last {
+            for (lane, upset) in upsets.iter().enumerate().filter(|(_, u)| u.2 == cycle) {
+                hosts.rig.bench.engine().flip(upset.0, upset.1, lane);
+            }
+            hosts.tick();
+        }
+        hosts.run_for(Time::from(STUCK_MS + 5) * MS);
+        hosts.write(word::CONTROL, control::CANCEL.into());
+        hosts.run_for(MS);
+        hosts.assert_never_wrong(&what);
+        hosts.good(PositionSelectMemory, 0x4D);
+        let starts = hosts.read(word::STATE).into_iter().map(|s| s >> 16);
+        most_starts = most_starts.max(starts.max().unwrap_or(0));
+    }
+    assert!(most_starts > 1, "none of them was led into a loop");
+}

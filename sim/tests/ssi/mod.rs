@@ -1,0 +1,45 @@
+//! SSI: the port at its encoder.
+
+mod line;
+mod three_ways;
+mod upsets;
+
+use endat_hdl::encoder_port::EncoderPort;
+use endat_hdl::regs::Protocol;
+use endat_sim::bench::{Bench, PinNames};
+use endat_sim::ssi::{EncoderConfig, SsiLink};
+use endat_sim::Time;
+use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::engine::Compiled;
+use rust_hdl::prelude::Block;
+use std::sync::Arc;
+
+/// A port as a card has it.
+fn block() -> EncoderPort {
+    let mut block = EncoderPort::speaking(Protocol::Ssi, false);
+    block.connect_all();
+    block
+}
+
+fn design() -> Design {
+    elaborate(&block(), "encoder_port").unwrap()
+}
+
+/// A position that nobody can guess.
+fn shaft(time: Time) -> u64 {
+    (time / 1_000).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 8
+}
+
+/// A port with an encoder `delay` away.
+fn bench(design: &Design, system_hz: u64, config: EncoderConfig, delay: Time) -> Bench<Compiled> {
+    let mut bench = Bench::new(Compiled::new(design).unwrap(), system_hz, vec![]);
+    let mut link = SsiLink::new(config, delay);
+    link.set_motion(Arc::new(shaft));
+    bench.add_other(&PinNames::channel(), Box::new(link));
+    bench
+}
+
+/// The encoder on it.
+fn link(bench: &mut Bench<Compiled>) -> &mut SsiLink {
+    bench.others_as_mut().next().expect("an SSI encoder")
+}

@@ -1,0 +1,159 @@
+//! Every state that an SSI port can be brought into, reached or not: the next triggers work, and with two copies no wrong position goes out.
+
+use endat_hdl::protocols::ssi::port::SsiPort;
+use endat_sim::rng::Rng;
+use endat_sim::ssi::{Encoder, EncoderConfig};
+use endat_sim::US;
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Compiled, Engine, Keep};
+use rust_hdl::prelude::Block;
+
+/// Registers up to this width get every value, wider ones have each of their bits inverted.
+const ALL_VALUES_BITS: usize = 6;
+/// Moments of the frame at which each of them is upset.
+const MOMENTS: u64 = 16;
+/// Triggers that may be lost or bad after one that was upset.
+const TRIGGERS: usize = 2;
+const SYSTEM_MHZ: u64 = 20;
+const WIDTH: u32 = 12;
+/// A frame of two copies and its recovery time, in cycles.
+const FRAME_CYCLES: u64 = 2 * (WIDTH as u64 + 1) * PERIOD + 400;
+const PERIOD: u64 = 24;
+/// The longest wait after an upset: a timer of 13 bits.
+const LIMIT_CYCLES: u64 = 10_000;
+const POSITION: u64 = 0xA6C;
+
+/// A port at its encoder.
+#[derive(Clone)]
+struct Run {
+    engine: Compiled,
+    encoder: Encoder,
+    cycle: u64,
+}
+
+impl Run {
+    fn new(frame: u128) -> Self {
+        let mut block = SsiPort::default();
+        block.connect_all();
+        let design = elaborate(&block, "port").unwrap();
+        let mut engine = Compiled::keeping(&design, Keep::Registers).unwrap();
+        for (name, value) in [
+            ("data_i", 1),
+            ("period_cycles", PERIOD.into()),
+            ("position_bits", WIDTH.into()),
+            ("filter_cycles", 1),
+            ("recovery_limit_cycles", 380),
+            ("frame", frame),
+        ] {
+            let port = engine.port(name);
+            engine.set(port, value);
+        }
+        let config = EncoderConfig {
+            position_bits: WIDTH,
+            position: POSITION,
+            tm: 15 * US,
+            pulse_min: 0,
+            ..EncoderConfig::default()
+        };
+        let mut run = Self {
+            engine,
+            encoder: Encoder::new(config),
+            cycle: 0,
+        };
+        run.cycles(40);
+        run
+    }
+
+    fn get(&mut self, name: &str) -> u128 {
+        let port = self.engine.port(name);
+        self.engine.get(port)
+    }
+
+    fn set(&mut self, name: &str, value: u128) {
+        let port = self.engine.port(name);
+        self.engine.set(port, value);
+    }
+
+    fn cycles(&mut self, count: u64) {
+        for _ in 0..count {
+            let now = self.cycle * US / SYSTEM_MHZ;
+            let clk = self.get("ssi_clk") == 1;
+            self.encoder.clock(now, clk);
+            let data = self.encoder.data();
+            self.set("data_i", data.into());
+            self.set("timestamp", self.cycle.into());
+            self.engine.tick();
+            self.cycle += 1;
+        }
+    }
+
+    fn trigger(&mut self) {
+        self.set("trigger", 1);
+        self.cycles(1);
+        self.set("trigger", 0);
+    }
+
+    /// Waits for the end of what is under way; false if there is none.
+    fn ends(&mut self) -> bool {
+        let last = self.cycle + LIMIT_CYCLES;
+        while self.get("busy") == 1 {
+            if self.cycle > last {
+                return false;
+            }
+            self.cycles(10);
+        }
+        true
+    }
+
+    /// One trigger, and whether it brought all that it should.
+    fn is_good(&mut self) -> bool {
+        self.trigger();
+        let ends = self.ends();
+        self.cycles(600);
+        let shown = ["position", "cause", "fresh"].map(|name| self.get(name));
+        ends && shown == [POSITION.into(), 0, 1]
+    }
+}
+
+#[test]
+fn whatever_state_a_port_is_brought_into_the_next_triggers_work() {
+    let start = Run::new(6);
+    assert!(start.clone().is_good());
+    let names: Vec<String> = start.engine.nets().map(String::from).collect();
+    let registers: Vec<usize> = start.engine.registers().collect();
+    let mut rng = Rng::new(5);
+    let (mut count, mut lost, mut wrong) = (0, vec![], vec![]);
+    for register in registers {
+        let width = start.engine.width_bits(register);
+        let masks: Vec<u128> = match width {
+            0..=ALL_VALUES_BITS => (1..1 << width).collect(),
+            _ => (0..width).map(|bit| 1 << bit).collect(),
+        };
+        for (mask, moment) in masks.iter().flat_map(|m| (0..MOMENTS).map(move |n| (m, n))) {
+            let span = FRAME_CYCLES / MOMENTS;
+            let cycle = moment * span + rng.in_range(0, span - 1);
+            let mut run = start.clone();
+            run.trigger();
+            run.cycles(cycle);
+            for bit in (0..width).filter(|bit| mask >> bit & 1 == 1) {
+                run.engine.flip(register, bit);
+            }
+            let ends = run.ends();
+            let what = format!("{} ^ {mask:#b} in cycle {cycle}", names[register]);
+            run.cycles(600);
+            let shown = run.get("position");
+            let is_valid = run.get("position_valid") == 1 && run.get("fresh") == 1;
+            if is_valid && shown != POSITION.into() {
+                wrong.push(format!("{what}: {shown:#x}"));
+            }
+            let tries = (0..TRIGGERS).take_while(|_| !run.is_good()).count();
+            count += 1;
+            if !ends || !run.is_good() {
+                lost.push(format!("{what}: ends {ends}, {tries} bad"));
+            }
+        }
+    }
+    assert!(count > 5_000, "{count}");
+    assert!(lost.is_empty(), "{} of {count}: {lost:#?}", lost.len());
+    assert!(wrong.is_empty(), "{} of {count}: {wrong:#?}", wrong.len());
+}

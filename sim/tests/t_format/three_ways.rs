@@ -1,0 +1,51 @@
+//! The receiver with its bus: kernels, engines and emitted Verilog agree in every cycle.
+
+use super::rig::{design, Rig};
+use crate::three_way::{three_way, Stimulus};
+use endat_hdl::protocols::t_format::dsp::{AsyncDsp, TFormatStart};
+use endat_sim::rng::Rng;
+use endat_sim::t_format::{Defect, EncoderConfig};
+use rtl_design::kernel_engine;
+
+/// What the receiver was given in a life with requests of all kinds, defects and a processor that reads all the time.
+fn recorded() -> Stimulus {
+    let mut rng = Rng::new(7);
+    let mut rig = Rig::new(20, EncoderConfig::default());
+    rig.record();
+    for id in [3, 0, 1, 2, 6, 13, 7, 4, 3, 3, 0] {
+        rig.encoder.config.single_turn = rng.next_u64() as u32 >> 8;
+        rig.encoder.config.multi_turn = rng.next_u64() as u32 >> 8;
+        rig.encoder.config.defect = match rng.in_range(0, 5) {
+            0 => Defect::Flip {
+                field: rng.in_range(0, 3) as usize,
+                bit: rng.in_range(0, 7) as usize,
+            },
+            1 => Defect::Delimiter { field: 1 },
+            2 => Defect::Short { fields: 2 },
+            _ => Defect::None,
+        };
+        rig.memory(id, rng.next_u64() as u8, rng.next_u64() as u8);
+        rig.pins.trigger = !rig.pins.trigger;
+        // A request that is refused is told in these, and nothing is written before.
+        rig.steps(20);
+    }
+    rig.pins.reset = true;
+    rig.steps(3);
+    rig.pins.reset = false;
+    rig.exchange(2);
+    rig.recorded()
+}
+
+#[test]
+fn the_receiver_agrees_in_kernels_engines_and_verilog() {
+    let block = AsyncDsp::new(&TFormatStart::default());
+    let mut kernel = kernel_engine!(block; clk_i;
+        in rst_i, clk_select_i, trigger_i, bus_cs_n_i, bus_rd_n_i, bus_wr_n_i, bus_address_i, bus_data_i, encoder_data_i;
+        out bus_data_o, bus_data_oe, encoder_data_o, encoder_data_oe, led_o);
+    let recording = three_way("async_dsp", &mut kernel, design(), &recorded()).unwrap();
+    // Something has happened.
+    let driver = recording.output("encoder_data_oe");
+    let requests = driver.windows(2).filter(|w| w[0] < w[1]).count();
+    assert!(requests >= 10, "{requests}");
+    assert!(recording.output("led_o").contains(&1));
+}

@@ -1,0 +1,25 @@
+//! Configurations and what is made of them, the pages, the packages, and the rules of the house.
+
+mod boards;
+mod bus_card;
+mod comparison;
+mod config;
+mod constraints;
+mod documents;
+#[allow(dead_code)] // other topics take the rest
+mod emitted;
+mod files;
+mod house;
+mod maps;
+mod packages;
+mod pages;
+#[allow(dead_code)] // other topics take the rest
+mod passed;
+#[allow(dead_code)] // other topics take the rest
+mod program;
+#[allow(dead_code, unused_imports)]
+mod tools;
+
+mod bus {
+    mod board;
+}

@@ -1,0 +1,37 @@
+//! What is emitted, in the hands of simulators, synthesis and provers.
+
+mod bus_card;
+mod elaborate;
+#[allow(dead_code)] // other topics take the rest
+mod emitted;
+mod engines;
+mod keys;
+#[allow(dead_code)] // other topics take the rest
+mod passed;
+#[allow(dead_code)] // other topics take the rest
+mod program;
+mod prove;
+mod strangers;
+#[allow(dead_code, unused_imports)]
+mod tools;
+mod verilog;
+mod vhdl;
+
+mod ssi {
+    mod bench;
+    mod config;
+}
+mod t_format {
+    mod area;
+    mod bench;
+    mod config;
+}
+
+// The tests of design/ are made of these, too.
+#[path = "../design/tests/ghdl.rs"]
+mod ghdl;
+#[path = "../design/tests/stimulus.rs"]
+mod stimulus;
+#[path = "../design/tests/three_way.rs"]
+mod three_way;
+use endat_sim::rng;
