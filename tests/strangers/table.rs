@@ -11,7 +11,6 @@ use std::process::Command;
 use std::sync::LazyLock;
 
 const PAGE: &str = "docs/works-with.md";
-const RENEW: &str = "renew it with: cargo test write_works_with -- --ignored";
 
 /// A row of the table.
 struct Stranger {
@@ -66,15 +65,15 @@ fn stranger(row: &'static toml::Table) -> Stranger {
 
 /// The version of a package that CI installs: exactly one.
 fn installed_by_ci(package: &str) -> &'static str {
-    let script = include_str!("../../.ci/run");
+    let script = include_str!("../../.ci/install");
     let words = script.split_whitespace();
     let mut versions = words.filter_map(|w| w.strip_prefix(package)?.strip_prefix("=="));
     let version = versions.next();
     assert!(
         versions.next().is_none(),
-        "{package}: .ci/run has two versions"
+        "{package}: .ci/install has two versions"
     );
-    version.unwrap_or_else(|| panic!("{package}: .ci/run does not install it with =="))
+    version.unwrap_or_else(|| panic!("{package}: .ci/install does not install it with =="))
 }
 
 /// The page.
@@ -109,7 +108,7 @@ fn page() -> String {
         text,
         "\nVersions are those that ran last; others may do as well. Every emission is one of {} configurations: the presets, and cards that \
          have each bus, part and extreme that no preset has: {}.\n\nThis page is written from `tests/strangers/table.toml`: \
-         `cargo test write_works_with -- --ignored`. The benches of all emissions in every language, and at every usual clock behind every \
+         `UPDATE_EXPECT=1 cargo test --test emission strangers::table`. The benches of all emissions in every language, and at every usual clock behind every \
          bus, take an hour and a half: `cargo test strangers -- --ignored`.\n",
         names.len(),
         names.join(", ")
@@ -145,8 +144,8 @@ fn has_version(text: &str, version: &str) -> bool {
 
 #[test]
 fn the_page_is_the_table_s() {
-    let committed = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(PAGE)).unwrap();
-    assert!(committed == page(), "{PAGE}: {RENEW}");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(PAGE);
+    tools::assert_committed(&path, &page());
 }
 
 /// A row whose test is gone says nothing.
@@ -192,7 +191,7 @@ fn every_stranger_tells_its_version() {
         let is_same = has_version(&told, version);
         assert!(
             is_same || pip.is_none(),
-            "{name}: is {told}, and .ci/run installs {version}"
+            "{name}: is {told}, and .ci/install installs {version}"
         );
         if !is_same {
             let first = told.lines().next().unwrap_or("");
@@ -200,10 +199,4 @@ fn every_stranger_tells_its_version() {
             let _ = writeln!(std::io::stderr(), "NOTE {line}");
         }
     }
-}
-
-#[test]
-#[ignore = "writes docs/works-with.md"]
-fn write_works_with() {
-    fs::write(Path::new(env!("CARGO_MANIFEST_DIR")).join(PAGE), page()).unwrap();
 }
