@@ -1,6 +1,9 @@
 use super::*;
 use protocol::{ModeCommand, MODE_COMMANDS};
 
+#[path = "../tests/golden.rs"]
+mod golden;
+
 /// Every word of a card with two channels: name, address, access.
 fn words() -> Vec<(String, u16, &'static str)> {
     let mut words = Vec::new();
@@ -25,10 +28,7 @@ fn assert_golden(name: &str, now: &str) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("golden")
         .join(name);
-    if std::env::var_os("UPDATE_EXPECT").is_some() {
-        std::fs::write(&path, now).unwrap();
-    }
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), now);
+    golden::assert_committed(&path, now);
 }
 
 #[test]

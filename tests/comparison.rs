@@ -14,12 +14,7 @@ use std::path::Path;
 fn the_page_is_what_the_command_writes() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/comparison.md");
     let now = good(&["bench", "comparison"]);
-    let page = tools::committed(&path, &now);
-    for (line, (page, now)) in page.lines().zip(now.lines()).enumerate() {
-        let place = format!("docs/comparison.md:{}", line + 1);
-        assert_eq!(page, now, "{place}: UPDATE_EXPECT=1 cargo test comparison");
-    }
-    assert_eq!(page, now);
+    tools::assert_committed(&path, &now);
 }
 
 /// Catches a figure of the data file that was typed.

@@ -48,13 +48,7 @@ impl Figures {
     }
 
     fn check(self) {
-        let found = tools::committed(&self.path, &self.text);
-        let rows = found.lines().zip(self.text.lines());
-        let wrong: Vec<_> = rows.filter(|(found, wanted)| found != wanted).collect();
-        assert!(
-            wrong.is_empty(),
-            "UPDATE_EXPECT=1 cargo test pages\n{wrong:#?}"
-        );
+        tools::assert_committed(&self.path, &self.text);
     }
 }
 
@@ -219,41 +213,26 @@ fn every_key_of_the_preset_is_on_the_page() {
     }
 }
 
-/// Drawings, each with the command that draws it.
-const DRAWINGS: [(&str, &str, &[&str]); 6] = [
-    ("frame.svg", include_str!("../docs/frame.svg"), &["paper"]),
-    (
-        "supplement.svg",
-        include_str!("../docs/supplement.svg"),
-        &["additional-data", "--frame", "5"],
-    ),
-    (
-        "parameter.svg",
-        include_str!("../docs/parameter.svg"),
-        &["parameter", "--frame", "4"],
-    ),
-    (
-        "initialise.svg",
-        include_str!("../docs/initialise.svg"),
-        &["initialise", "--frame", "all"],
-    ),
-    (
-        "no-answer.svg",
-        include_str!("../docs/no-answer.svg"),
-        &["no-answer", "--frame", "3"],
-    ),
-    (
-        "no-answer-pause.svg",
-        include_str!("../docs/no-answer-pause.svg"),
-        &["no-answer", "--frame", "all"],
-    ),
+/// Drawings of the programming guide, each with the scenario that it shows.
+const DRAWINGS: [(&str, &[&str]); 6] = [
+    ("frame.svg", &["paper"]),
+    ("supplement.svg", &["additional-data", "--frame", "5"]),
+    ("parameter.svg", &["parameter", "--frame", "4"]),
+    ("initialise.svg", &["initialise", "--frame", "all"]),
+    ("no-answer.svg", &["no-answer", "--frame", "3"]),
+    ("no-answer-pause.svg", &["no-answer", "--frame", "all"]),
 ];
+
+fn docs(name: &str) -> std::path::PathBuf {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    docs.join(name)
+}
 
 #[test]
 fn the_drawings_in_the_programming_guide_are_the_program_s() {
     let page = include_str!("../docs/programming.md");
-    let folder = crate::tools::folder("pages-drawings");
-    for (name, committed, scenario) in DRAWINGS {
+    let folder = tools::folder("pages-drawings");
+    for (name, scenario) in DRAWINGS {
         let command = format!("cargo run -- sim {} --svg {name}", scenario.join(" "));
         assert!(page.contains(&format!("`{command}`")), "{command}");
         assert!(page.contains(&format!("]({name})](")), "{name}");
@@ -262,20 +241,15 @@ fn the_drawings_in_the_programming_guide_are_the_program_s() {
         let outcome = crate::program::run(&[&["sim"], scenario, &svg[..]].concat());
         assert_eq!(outcome.exit_code, 0, "{outcome:?}");
         let drawn = std::fs::read_to_string(file).unwrap();
-        assert!(drawn == committed, "draw it again in docs: {command}");
+        tools::assert_committed(&docs(name), &drawn);
     }
 }
 
 #[test]
 fn the_maps_in_the_page_on_margin_are_the_program_s() {
     let page = include_str!("../docs/margin.md");
-    let folder = crate::tools::folder("pages-maps");
-    let maps = [
-        ("shmoo.svg", include_str!("../docs/shmoo.svg")),
-        ("jitter.svg", include_str!("../docs/jitter.svg")),
-        ("eye.svg", include_str!("../docs/eye.svg")),
-    ];
-    for (name, committed) in maps {
+    let folder = tools::folder("pages-maps");
+    for name in ["shmoo.svg", "jitter.svg", "eye.svg"] {
         assert!(page.contains(&format!("]({name})](")), "{name}");
         let line = page.lines().find(|l| l.contains(&format!("--svg {name}")));
         let command = line.unwrap().split('`').nth(1).unwrap();
@@ -289,7 +263,7 @@ fn the_maps_in_the_page_on_margin_are_the_program_s() {
         let outcome = crate::program::run(&words);
         assert_eq!(outcome.exit_code, 0, "{outcome:?}");
         let drawn = std::fs::read_to_string(folder.join(name)).unwrap();
-        assert!(drawn == committed, "draw it again in docs: {command}");
+        tools::assert_committed(&docs(name), &drawn);
     }
 }
 

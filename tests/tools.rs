@@ -1,13 +1,13 @@
 //! Outside tools: those of `design/tests/tools.rs`, each in the table of strangers.
 
+#[path = "golden.rs"]
+mod golden;
 #[path = "../design/tests/tools.rs"]
 mod plain;
 
-use plain::skip;
-pub use plain::{cannot, folder, has, is_whole, run, third};
+pub use golden::{assert_committed, difference, renewing};
+pub use plain::{cannot, folder, has, is_whole, run, skip, third};
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
@@ -52,12 +52,4 @@ pub fn require_python(module: &str, check: &str) -> bool {
         .stderr(Stdio::null())
         .status();
     import.is_ok_and(|s| s.success()) || skip(&format!("Python module {module}"), check)
-}
-
-/// A committed file, after `UPDATE_EXPECT=1` has made it what it should be now.
-pub fn committed(path: &Path, now: &str) -> String {
-    if std::env::var_os("UPDATE_EXPECT").is_some() {
-        fs::write(path, now).unwrap();
-    }
-    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }

@@ -2,7 +2,7 @@
  * @file endat_map.h
  * Register map 1.0.0 of every card, whatever its configuration.
  *
- * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test system driver writes it again.
+ * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test cards driver writes it again.
  *
  * ..._WORD counts words of 32 bits, ..._BYTE bytes: 4 * ..._WORD. Of blocks that each channel has, both take the channel.
  */

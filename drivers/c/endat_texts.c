@@ -2,7 +2,7 @@
  * @file endat_texts.c
  * What the numbers of a card say, and what to do about them.
  *
- * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test system driver writes it again.
+ * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test cards driver writes it again.
  */
 #include "endat.h"
 #include "endat_internal.h"

@@ -14,7 +14,7 @@ use std::fmt::Write;
 /// What all macros begin with; a card's own header has the card's name there.
 const PREFIX: &str = "ENDAT_MAP";
 const ORIGIN: &str =
-    "Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test system driver writes it again.";
+    "Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test cards driver writes it again.";
 
 /// Map and texts, as they lie beside the driver.
 pub fn artifacts() -> Vec<Artifact> {

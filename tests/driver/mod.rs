@@ -27,11 +27,7 @@ fn home() -> PathBuf {
 fn the_driver_has_the_map_and_the_texts_of_the_tables() {
     for file in endat_gen::maps::driver::artifacts() {
         let path = home().join(&file.path);
-        assert!(
-            tools::committed(&path, &file.text) == file.text,
-            "{}: is not what the tables give; UPDATE_EXPECT=1 renews it",
-            file.path
-        );
+        tools::assert_committed(&path, &file.text);
     }
 }
 
@@ -72,10 +68,7 @@ fn the_page_has_every_error_with_its_name_in_rust_and_its_text() {
     let (before, rest) = is.split_once("\n## Errors\n\n").unwrap();
     let (_, behind) = rest.split_once("\nEach has this text").unwrap();
     let should = format!("{before}\n## Errors\n\n{table}\nEach has this text{behind}");
-    assert!(
-        tools::committed(&page, &should) == should,
-        "docs/driver.md: its errors are not those of the driver; UPDATE_EXPECT=1 renews them"
-    );
+    tools::assert_committed(&page, &should);
 }
 
 /// Catches a call or parameter without a word in its documentation.

@@ -207,10 +207,7 @@ fn the_drawing_of_a_rehearsal_shows_gaps_and_causes() {
     // Before, between and behind the two gaps.
     assert_eq!(drawn.matches("class=\"series-0\"").count(), 3);
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/recording.svg");
-    assert!(
-        drawn == tools::committed(&path, &drawn),
-        "UPDATE_EXPECT=1 draws docs/recording.svg again"
-    );
+    tools::assert_committed(&path, &drawn);
 }
 
 /// Catches a fault of a T-format encoder that is none, another one, or does not end.

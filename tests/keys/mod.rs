@@ -110,7 +110,7 @@ fn the_reader_asks_for_the_keys_of_the_table_and_for_no_other() {
 
 /// A page in which the tables behind such a line are written from the table of keys.
 const MARK: &str =
-    "<!-- From the table of keys: UPDATE_EXPECT=1 cargo test --test system keys writes it. -->\n";
+    "<!-- From the table of keys: UPDATE_EXPECT=1 cargo test --test emission keys writes it. -->\n";
 
 #[test]
 fn the_tables_of_the_pages_are_those_of_the_keys() {
@@ -128,10 +128,7 @@ fn the_tables_of_the_pages_are_those_of_the_keys() {
             let behind = part.find("\n\n").map_or("", |at| &part[at + 1..]);
             now += &format!("{MARK}{table}{behind}");
         }
-        assert!(
-            tools::committed(&path, &now) == now,
-            "{page}: UPDATE_EXPECT=1 cargo test --test system keys"
-        );
+        tools::assert_committed(&path, &now);
         for (at, cell) in now.match_indices("](#") {
             let anchor = cell.len() + at;
             let anchor = now[anchor..].split(')').next().unwrap();
@@ -154,10 +151,7 @@ fn the_committed_schemas_are_what_the_command_prints() {
         let now = good(&["schema", form]);
         let name = format!("docs/endat-{form}.schema.json");
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(&name);
-        assert!(
-            tools::committed(&path, &now) == now,
-            "{name}: UPDATE_EXPECT=1 cargo test --test system keys"
-        );
+        tools::assert_committed(&path, &now);
         let file = dir.path(form);
         run(&["schema", form, "--out", &file]);
         assert_eq!(std::fs::read_to_string(&file).unwrap(), now);

@@ -114,29 +114,8 @@ fn area_is_exactly_what_the_table_says() {
             }
         }
     }
-    let expected = tools::committed(&path, &found);
-    assert!(
-        found == expected,
-        "area has changed; if that is meant: UPDATE_EXPECT=1 cargo test area\n{}",
-        difference(&expected, &found)
-    );
+    tools::assert_committed(&path, &found);
     assert!(above.is_empty(), "{above:?}");
-}
-
-/// Lines that differ.
-fn difference(expected: &str, found: &str) -> String {
-    let lines = expected.lines().zip(found.lines());
-    let mut section = "";
-    let mut text = String::new();
-    for (old, new) in lines {
-        if new.starts_with('[') {
-            section = new;
-        }
-        if old != new {
-            let _ = writeln!(text, "{section}: {new}, table: {old}");
-        }
-    }
-    text
 }
 
 /// Catches an area that is taken for known though its text, its tool or what is counted is another one.
