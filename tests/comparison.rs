@@ -1,6 +1,5 @@
 //! The page that compares, and the tables that translate for users of other systems.
 
-use crate::passed::Check;
 use crate::program::good;
 use crate::tools;
 use endat_gen::area;
@@ -32,11 +31,6 @@ fn logic_cells_are_what_place_and_route_packs() {
         let subjects = area::subjects().unwrap();
         let subject = subjects.iter().find(|s| s.name == name).unwrap();
         let files = subject.files();
-        let check = Check::new(format!("logic cells of {name}")).files(&files);
-        let check = check.text(&cells.to_string()).source("gen/area");
-        let Some(_running) = check.begin() else {
-            continue;
-        };
         let folder = tools::folder(&format!("logic_cells_{name}"));
         let packed = area::logic_cells(&folder, &files, name).unwrap();
         for (what, used) in [("cells", packed.cells), ("rams", packed.rams)] {

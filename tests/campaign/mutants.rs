@@ -1,7 +1,6 @@
 //! The campaign over mutants: a small block, a bench that looks away, one that fails, and the page.
 
 use super::run;
-use crate::passed::Check;
 use crate::tools;
 use endat_gen::campaign::mutants::{subjects, Emission, Mutants};
 use endat_sim::campaign::{run_shard, Shard, Tally};
@@ -44,15 +43,6 @@ fn a_bench_without_its_comparison_sees_fewer_mutants() {
     if !require("mutants of a block") {
         return;
     }
-    let emission = Emission::named("async_dsp").unwrap();
-    let check = Check::new("mutants of a block").files(&emission.subject.files);
-    let check = check
-        .text(&emission.bench.text)
-        .source("gen/campaign/mutants");
-    check.unless_passed(a_blind_bench_sees_fewer);
-}
-
-fn a_blind_bench_sees_fewer() {
     let emission = || Emission::named("async_dsp").unwrap();
     let seen = tally(emission());
     assert_eq!(count(&seen, "not_run"), 0, "{seen:?}");
@@ -74,10 +64,6 @@ fn a_card_whose_bench_fails_is_refused() {
         return;
     }
     let mut failing = Emission::named("async_dsp").unwrap();
-    let check = Check::new("mutants of a card whose bench fails").files(&failing.subject.files);
-    let Some(_running) = check.source("gen/campaign/mutants").begin() else {
-        return;
-    };
     failing.bench.text = "`timescale 1ns / 1ps
 module async_dsp_tb;
     reg clock;
