@@ -7,6 +7,7 @@ use rtl_design::engine::{
     Compiled, Engine, EngineError, Interpreter, Keep, LaneWords, Lanes, Port, PortId,
 };
 use rtl_design::verilog::{self, emitted_name, Header};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -169,6 +170,9 @@ pub fn lanes_agree(
             .rotate_left(lane % stimulus.middle.len().max(1));
         moved
     };
+    let changes = Changes::of(stimulus);
+    let alone = Compiled::new(design).map_err(error)?;
+    let mut wanted: BTreeMap<usize, Recording> = BTreeMap::new();
     for (name, lanes) in made {
         let mut lanes = lanes.map_err(error)?;
         let inputs: Vec<PortId> = stimulus.inputs.iter().map(|n| lanes.port(n)).collect();
@@ -179,32 +183,39 @@ pub fn lanes_agree(
             .collect();
         let watched = [0, 1, 31, lanes.lanes() / 2, lanes.lanes() - 1];
         let mut got: Vec<Vec<Vec<u128>>> = vec![vec![]; watched.len()];
-        for cycle in 0..stimulus.cycles.len() {
-            if !stimulus.middle.is_empty() {
-                for lane in 0..lanes.lanes() {
-                    let row = &stimulus.middle[(cycle + lane) % stimulus.middle.len()];
-                    for (port, value) in inputs.iter().zip(row) {
-                        lanes.set(*port, lane, *value);
-                    }
-                }
-                lanes.fall();
-            }
+        // The values before the first row of each lane.
+        if let Some(count) = stimulus.cycles.len().checked_sub(1) {
             for lane in 0..lanes.lanes() {
-                let row = &stimulus.cycles[(cycle + lane) % stimulus.cycles.len()];
+                let row = &stimulus.cycles[(count + lane) % stimulus.cycles.len()];
                 for (port, value) in inputs.iter().zip(row) {
                     lanes.set(*port, lane, *value);
                 }
             }
+        }
+        let drive = |lanes: &mut Lanes, cycle: usize, rows: &[Vec<u128>], new: &[Vec<usize>]| {
+            for lane in 0..lanes.lanes() {
+                let at = (cycle + lane) % rows.len();
+                for input in &new[at] {
+                    lanes.set(inputs[*input], lane, rows[at][*input]);
+                }
+            }
+        };
+        for cycle in 0..stimulus.cycles.len() {
+            if !stimulus.middle.is_empty() {
+                drive(&mut lanes, cycle, &stimulus.middle, &changes.middle);
+                lanes.fall();
+            }
+            drive(&mut lanes, cycle, &stimulus.cycles, &changes.cycles);
             for (lane, rows) in watched.iter().zip(&mut got) {
                 rows.push(outputs.iter().map(|id| lanes.get(*id, *lane)).collect());
             }
             lanes.tick();
         }
         for (lane, rows) in watched.iter().zip(got) {
-            let mut alone = Compiled::new(design).map_err(error)?;
             let want = match lane {
                 0 => expected,
-                lane => &record(&mut alone, &from(*lane)),
+                lane => (wanted.entry(*lane))
+                    .or_insert_with(|| record(&mut alone.clone(), &from(*lane))),
             };
             let rows = Recording {
                 outputs: expected.outputs.clone(),
@@ -214,6 +225,33 @@ pub fn lanes_agree(
         }
     }
     Ok(())
+}
+
+/// For each row of a stimulus, the inputs whose values differ from the row before; the last row precedes the first.
+struct Changes {
+    cycles: Vec<Vec<usize>>,
+    middle: Vec<Vec<usize>>,
+}
+
+impl Changes {
+    fn of(stimulus: &Stimulus) -> Self {
+        let new = |before: &[u128], row: &[u128]| {
+            let is_new = |i: &usize| before[*i] != row[*i];
+            (0..row.len()).filter(is_new).collect()
+        };
+        let rows = &stimulus.cycles;
+        let last = |at: usize| &rows[(at + rows.len() - 1) % rows.len()];
+        let middle = &stimulus.middle;
+        assert!(middle.is_empty() || middle.len() == rows.len());
+        Self {
+            cycles: (0..rows.len())
+                .map(|at| new(middle.get(at).unwrap_or(last(at)), &rows[at]))
+                .collect(),
+            middle: (0..middle.len())
+                .map(|at| new(last(at), &middle[at]))
+                .collect(),
+        }
+    }
 }
 
 pub fn agree(engine: &str, expected: &Recording, got: &Recording) -> Result<(), String> {
