@@ -445,7 +445,7 @@ mod tests {
 
     /// All of it: a minute with `--release`. Memory is that of a group of rows, however long it takes.
     #[test]
-    #[ignore = "36 million rows"]
+    #[ignore = "slow: an hour of rows in a Parquet file"]
     fn a_whole_hour_is_recorded_in_constant_memory() {
         let megabytes = hour(36_000_000);
         assert!(megabytes < 300.0, "{megabytes:.0} MB");

@@ -38,6 +38,7 @@ use crate::protocols::t_format::encoder as t_format_encoder;
 use crate::protocols::t_format::protocol::TFormat;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::service_times;
+use endat_hdl::config::CardConfig;
 use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::protocols::t_format::protocol::SYSTEM_HZ as RECEIVER_HZ;
 use endat_host::owner::AnyCard;
@@ -50,9 +51,10 @@ use endat_sim::{Time, MS, NS, US};
 use rtl_design::elaborate::Design;
 use rtl_design::engine::Compiled;
 use std::borrow::Cow;
+use std::collections::VecDeque;
 use std::io;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// A half-sent command is forgotten after this; real cards take 100 ms, which would be seconds of simulation.
@@ -131,6 +133,28 @@ pub fn card_at(port: &str, baud: u32) -> Result<AnyCard, HostError> {
 
 fn compiled(design: &Design) -> Result<Compiled, GenError> {
     Compiled::new(design).map_err(|e| GenError::fault("design", &e))
+}
+
+/// A compiled card, after reset, with the settings that it was made from.
+type Kept = (HostBus, CardConfig, ServiceTimes, Compiled);
+
+/// Cards that were compiled last: compiling takes longer than most simulations, and a process that opens one card often opens it again.
+static KEPT: Mutex<VecDeque<Kept>> = Mutex::new(VecDeque::new());
+const KEPT_CARDS: usize = 8;
+
+/// The card of a project in native code.
+fn compiled_card(project: &Project, times: ServiceTimes) -> Result<Compiled, GenError> {
+    let (bus, card) = (project.bus, &project.card);
+    let is_it = |kept: &&Kept| kept.0 == bus && kept.1 == *card && kept.2 == times;
+    let lock = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(kept) = lock().iter().find(is_it) {
+        return Ok(kept.3.clone());
+    }
+    let new = compiled(&crate::design_with(project, &times, LINK_TIMEOUT_US)?)?;
+    let mut kept = lock();
+    kept.push_front((bus, card.clone(), times, new.clone()));
+    kept.truncate(KEPT_CARDS);
+    Ok(new)
 }
 
 fn jitter(config: &VirtualConfig) -> Jitter {
@@ -213,8 +237,11 @@ impl VirtualCard {
         if bus != project.bus {
             project.to_mut().bus = bus;
         }
-        let design = crate::design_with(&project, &service, LINK_TIMEOUT_US)?;
-        let mut bench = Bench::new(compiled(&design)?, card.system_hz, Vec::new());
+        let mut bench = Bench::new(
+            compiled_card(&project, service)?,
+            card.system_hz,
+            Vec::new(),
+        );
         if card.line.double_edge {
             bench.set_double_edge();
         }

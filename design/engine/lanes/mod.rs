@@ -58,10 +58,13 @@ pub struct Lanes {
 fn transpose(words: &mut [u64; 64]) {
     let (mut step, mut mask) = (32, 0x0000_0000_FFFF_FFFF_u64);
     while step > 0 {
-        for first in (0..64).filter(|i| i & step == 0) {
-            let moved = (words[first] >> step ^ words[first + step]) & mask;
-            words[first] ^= moved << step;
-            words[first + step] ^= moved;
+        for pair in words.chunks_exact_mut(2 * step) {
+            let (low, high) = pair.split_at_mut(step);
+            for (low, high) in low.iter_mut().zip(high) {
+                let moved = (*low >> step ^ *high) & mask;
+                *low ^= moved << step;
+                *high ^= moved;
+            }
         }
         step /= 2;
         mask ^= mask << step;
@@ -366,11 +369,14 @@ impl Lanes {
         let words: [u128; 64] =
             std::array::from_fn(|lane| self.memories[index][first(lane) + read_at[lane] as usize]);
         if let Some(write) = nets.write {
-            let enable = self.gather(write.enable, part, 0);
-            if enable.contains(&1) {
+            let enable = self.state[self.layout.place(write.enable) + part];
+            if enable != 0 {
                 let write_at = self.gather(write.address, part, 0);
                 let data = [0, 64].map(|first_bit| self.gather(write.data, part, first_bit));
-                for lane in (0..64).filter(|lane| enable[*lane] != 0) {
+                for lane in 0..64 {
+                    if enable >> lane & 1 == 0 {
+                        continue;
+                    }
                     let word = u128::from(data[0][lane]) | u128::from(data[1][lane]) << 64;
                     self.memories[index][first(lane) + write_at[lane] as usize] = word;
                 }
