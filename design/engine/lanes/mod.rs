@@ -54,17 +54,17 @@ pub struct Lanes {
     has_fallen: bool,
 }
 
-/// Bit j of word i becomes bit i of word j.
+/// Bit j of word i becomes bit i of word j. Plain loops: closures and adapters are not inlined in a build for tests.
 fn transpose(words: &mut [u64; 64]) {
     let (mut step, mut mask) = (32, 0x0000_0000_FFFF_FFFF_u64);
     while step > 0 {
-        for pair in words.chunks_exact_mut(2 * step) {
-            let (low, high) = pair.split_at_mut(step);
-            for (low, high) in low.iter_mut().zip(high) {
-                let moved = (*low >> step ^ *high) & mask;
-                *low ^= moved << step;
-                *high ^= moved;
-            }
+        let mut first = 0;
+        while first < 64 {
+            let moved = (words[first] >> step ^ words[first + step]) & mask;
+            words[first] ^= moved << step;
+            words[first + step] ^= moved;
+            // The next one without the bit of the step.
+            first = (first + step + 1) & !step;
         }
         step /= 2;
         mask ^= mask << step;
@@ -323,8 +323,8 @@ impl Lanes {
         if last <= first_bit {
             return values;
         }
-        for (value, bit) in values.iter_mut().zip(first_bit..last) {
-            *value = self.state[place + bit * self.words];
+        for bit in first_bit..last {
+            values[bit - first_bit] = self.state[place + bit * self.words];
         }
         transpose(&mut values);
         values
@@ -337,8 +337,13 @@ impl Lanes {
         let mut rows = *values;
         transpose(&mut rows);
         let last = self.form.nets[net].width_bits.min(first_bit + 64);
-        for (new, bit) in rows.into_iter().zip(first_bit..last) {
-            is_changed |= std::mem::replace(&mut self.state[place + bit * self.words], new) != new;
+        for bit in first_bit..last {
+            let (word, new) = (
+                &mut self.state[place + bit * self.words],
+                rows[bit - first_bit],
+            );
+            is_changed |= *word != new;
+            *word = new;
         }
         if is_changed {
             self.layout.mark(&mut self.state, net);
@@ -366,8 +371,10 @@ impl Lanes {
             None => 0,
         };
         let read_at = self.gather(nets.read_address, part, 0);
-        let words: [u128; 64] =
-            std::array::from_fn(|lane| self.memories[index][first(lane) + read_at[lane] as usize]);
+        let mut words = [0; 64];
+        for (lane, word) in words.iter_mut().enumerate() {
+            *word = self.memories[index][first(lane) + read_at[lane] as usize];
+        }
         if let Some(write) = nets.write {
             let enable = self.state[self.layout.place(write.enable) + part];
             if enable != 0 {
@@ -386,7 +393,10 @@ impl Lanes {
         }
         let width_bits = form.nets[nets.read_data].width_bits;
         for first_bit in [0, 64].into_iter().filter(|bit| *bit < width_bits) {
-            let values = words.map(|word| (word >> first_bit) as u64);
+            let mut values = [0; 64];
+            for (lane, value) in values.iter_mut().enumerate() {
+                *value = (words[lane] >> first_bit) as u64;
+            }
             self.scatter(nets.read_data, part, first_bit, &values);
         }
     }
