@@ -14,8 +14,6 @@ mod maps;
 mod packages;
 mod pages;
 #[allow(dead_code)] // other topics take the rest
-mod passed;
-#[allow(dead_code)] // other topics take the rest
 mod program;
 #[allow(dead_code, unused_imports)]
 mod tools;

@@ -62,22 +62,28 @@ fn cores(test: &str) -> [(&'static str, &'static str, usize, PathBuf); 2] {
 /// Catches a file that the list leaves out, a target that FuseSoC refuses, and lint.
 #[test]
 fn fusesoc_lints_and_simulates_the_core() {
+    fusesoc_runs("fusesoc", &[("async_dsp", &["lint", "sim"])]);
+}
+
+#[test]
+#[ignore = "slow: FuseSoC's lint and simulation of a card"]
+fn fusesoc_lints_and_simulates_the_card() {
+    fusesoc_runs("fusesoc-card", &[("s6_two_channel", &["lint", "sim"])]);
+}
+
+fn fusesoc_runs(test: &str, rows: &[(&str, &[&str])]) {
     if !require_all(&["fusesoc", "verilator", "iverilog"], "FuseSoC core") {
         return;
     }
-    let cores = cores("fusesoc");
-    let template = include_str!("../gen/templates/integration/core.jinja");
-    let runs: Vec<_> = tools::third(&cores, template.len())
-        .map(|core| core.0)
-        .collect();
-    for (name, _, _, folder) in &cores {
-        let targets = ["lint", "sim"].into_iter();
-        for target in targets.filter(|t| *t == "lint" || runs.contains(name)) {
+    for (name, targets) in rows {
+        let folder = &written(&preset(name), &format!("{test}-{name}"));
+        for target in *targets {
+            let is_lint = *target == "lint";
             let target = format!("--target={target}");
             let arguments = ["--cores-root", ".", "run", &target, name];
             let (is_good, told) = run("fusesoc", folder, &arguments);
             assert!(is_good, "{name} {target}: {told}");
-            assert!(target.ends_with("lint") || told.contains("PASS"), "{told}");
+            assert!(is_lint || told.contains("PASS"), "{told}");
         }
     }
 }

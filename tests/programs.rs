@@ -9,8 +9,6 @@ mod hosts;
 mod integrators;
 mod new;
 #[allow(dead_code)] // other topics take the rest
-mod passed;
-#[allow(dead_code)] // other topics take the rest
 mod program;
 mod python;
 mod shmoo;

@@ -37,8 +37,10 @@ fn count(tally: &Tally, class: &str) -> u64 {
     tally.count(|row| row.class == class)
 }
 
-/// The campaign can fail: a bench that compares nothing sees fewer mutants than the one that is emitted, which sees nearly all.
+/// The campaign can fail: a bench that compares nothing sees fewer mutants than the one that is emitted, which sees nearly all. Each mutant is
+/// a program that Verilator and a C++ compiler build; `verilog::t_format_mutations` shows in the quick suite that the bench sees a wrong block.
 #[test]
+#[ignore = "slow: mutants of a block, with a bench and with a blind one"]
 fn a_bench_without_its_comparison_sees_fewer_mutants() {
     if !require("mutants of a block") {
         return;
@@ -59,6 +61,7 @@ fn a_bench_without_its_comparison_sees_fewer_mutants() {
 }
 
 #[test]
+#[ignore = "slow: mutants of a card whose bench fails"]
 fn a_card_whose_bench_fails_is_refused() {
     if !require("a bench that fails") {
         return;

@@ -34,8 +34,10 @@ fn assert_whole(folder: &Path) {
     merge.extend(files.iter().map(String::as_str));
     merge.extend(["--out", "merged.csv"]);
     program(folder, &merge);
-    let one = [&["campaign"], &CAMPAIGN[..], &["--out", "one.csv"]].concat();
-    program(folder, &one);
+    if !folder.join("one.csv").exists() {
+        let one = [&["campaign"], &CAMPAIGN[..], &["--out", "one.csv"]].concat();
+        program(folder, &one);
+    }
     let read = |name: &str| fs::read(folder.join(name)).unwrap();
     assert!(read("merged.csv") == read("one.csv"));
 }

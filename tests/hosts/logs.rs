@@ -1,9 +1,8 @@
 //! `log` and `reg write` when something is wrong: what is told, drawn and kept.
 
-use super::{slow_card, Served};
+use super::{changed_text, quick_text, slow_card, Served, QUICKER};
 use crate::tools;
 use endat_gen::cli;
-use endat_gen::config::preset;
 use endat_gen::virtual_card::Door;
 use std::fs;
 use std::path::PathBuf;
@@ -16,7 +15,7 @@ fn run(arguments: &[&str]) -> cli::Outcome {
 fn wrong_width(folder: &str) -> (PathBuf, String) {
     let folder = tools::folder(folder);
     let toml = folder.join("wrong.toml");
-    let text = preset("s6_two_channel").unwrap();
+    let text = quick_text("s6_two_channel");
     let text = text.replacen("\nposition_bits = 29", "\nposition_bits = 25", 1);
     fs::write(&toml, text).unwrap();
     (folder, format!("virtual:{}", toml.display()))
@@ -137,7 +136,7 @@ fn what_cannot_be_logged_is_told_at_once() {
     let toml = folder.join("register.toml");
     // The second one could have a clock running, and has none.
     for name in ["s6_two_channel", "s6_two_channel_service"] {
-        let text = preset(name).unwrap();
+        let text = changed_text(name, &QUICKER);
         let line = text.lines().find(|l| l.starts_with("sources = ")).unwrap();
         fs::write(&toml, text.replacen(line, "sources = [\"register\"]", 1)).unwrap();
         let port = format!("virtual:{}", toml.display());

@@ -1,6 +1,6 @@
 //! Virtual cards behind ports: TCP and pseudo terminals, in threads of the test.
 
-use super::{card_of, changed};
+use super::{card_of, changed, QUICK};
 use endat_gen::config::Project;
 use endat_gen::virtual_card::{serve, Door};
 use endat_host::transport::Port;
@@ -48,12 +48,11 @@ impl Drop for Served {
     }
 }
 
-/// Slow enough sampling for a machine that simulates slowly.
+/// A quick card that samples slowly enough for a machine that simulates slowly.
 pub fn slow_card() -> Project {
-    changed(
-        "s6_two_channel",
-        &[("sample_hz = 10_000", "sample_hz = 1_000")],
-    )
+    let mut changes = QUICK;
+    changes[5] = ("sample_hz = 10_000", "sample_hz = 1_000");
+    changed("s6_two_channel", &changes)
 }
 
 /// Catches advice on the form of an address that has the right one.

@@ -1,6 +1,6 @@
 //! The live page: what it is answered, whom it refuses, what becomes of it when a card goes, and how it is in a browser.
 
-use crate::hosts::{slow_card, Served};
+use crate::hosts::{quick_service_port, quick_text, slow_card, Served, SERVICE};
 use crate::program::{self, begun, Dir};
 use crate::tools;
 use endat_gen::virtual_card::Door;
@@ -12,8 +12,6 @@ use std::net::TcpStream;
 use std::process::{Child, Command};
 use std::thread;
 use std::time::{Duration, Instant};
-
-const VIRTUAL: &str = "virtual:s6_two_channel_service";
 
 /// `view` in a folder of its own.
 struct View {
@@ -139,7 +137,7 @@ fn is_text(value: &Value, part: &str) -> bool {
 
 #[test]
 fn a_page_has_positions_plots_registers_parameters_and_recordings() {
-    let view = View::local("view-api", VIRTUAL);
+    let view = View::local("view-api", quick_service_port());
     let card = view.get("/api/card");
     assert_eq!(card["channels"][1]["unit"], "deg");
     assert!(card["channels"][0]["plate"]
@@ -162,7 +160,7 @@ fn a_page_has_positions_plots_registers_parameters_and_recordings() {
         (&0.into(), &0.into(), &true.into())
     );
     assert!(
-        (now["rate_hz"].as_f64().unwrap() - 10_000.0).abs() < 1.0,
+        (now["rate_hz"].as_f64().unwrap() - 5_000.0).abs() < 1.0,
         "{now}"
     );
     // Both turn evenly, the second one half as fast again.
@@ -284,7 +282,7 @@ fn a_page_has_what_a_t_format_encoder_tells_of_itself() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_the_page_with_a_whole_recording() {
-    let mut view = View::local("view-ended", "virtual");
+    let mut view = View::local("view-ended", quick_service_port());
     assert_eq!(view.ask("POST", "/api/record").0, 200);
     view.until("rows in the file", |now| {
         now["recording"]["rows"].as_u64() > Some(50)
@@ -301,7 +299,7 @@ fn ctrl_c_ends_the_page_with_a_whole_recording() {
 
 #[test]
 fn others_are_refused_and_nonsense_ends_in_an_error() {
-    let view = View::local("view-refused", "virtual");
+    let view = View::local("view-refused", quick_service_port());
     let host = format!("Host: {}\r\n", view.address);
     let ask = |path: &str, headers: &str| view.with("GET", path, headers).0;
     assert_eq!(ask("/api/now", &host), 200);
@@ -355,7 +353,7 @@ fn others_are_refused_and_nonsense_ends_in_an_error() {
 /// What listens for others needs the token that is printed; without it nothing is told.
 #[test]
 fn a_page_that_others_may_open_has_a_token() {
-    let view = View::new("view-token", "virtual", &["--listen", "0.0.0.0:0"]);
+    let view = View::new("view-token", quick_service_port(), &["--listen", "0.0.0.0:0"]);
     let token = view.token();
     assert_eq!(token.len(), 32, "{token}");
     let ask =
@@ -382,7 +380,7 @@ fn a_page_that_others_may_open_has_a_token() {
 /// Ten pages, and many who do not go on: nobody else waits for them, and the card loses nothing.
 #[test]
 fn slow_clients_harm_nobody() {
-    let view = View::local("view-slow", VIRTUAL);
+    let view = View::local("view-slow", quick_service_port());
     let mut stalled: Vec<TcpStream> = Vec::new();
     for n in 0..40 {
         let mut stream = TcpStream::connect(&view.address).unwrap();
@@ -527,7 +525,7 @@ fn a_browser_shows_the_page_and_obeys_its_keys() {
     }
     let dir = tools::folder("view");
     let config = dir.join("card.toml");
-    let text = endat_gen::config::preset("s6_two_channel_service").unwrap();
+    let text = quick_text(SERVICE);
     let (before, line) = text.split_once("\n[line]").unwrap();
     let line = line.replacen("parts = []", "parts = [\"alignment\", \"margin\"]", 1);
     fs::write(&config, format!("{before}\n[line]{line}")).unwrap();

@@ -21,6 +21,7 @@ use endat_hdl::protocol::ModeCommand;
 use rtl_design::elaborate::{elaborate, Design};
 use rtl_design::engine::{Keep, LaneWords, Lanes, PortId};
 use rust_hdl::prelude::Block;
+use std::sync::{Mutex, PoisonError};
 
 /// System clock: eight cycles to a bit.
 const SYSTEM_HZ: u64 = 32_000_000;
@@ -232,9 +233,16 @@ impl Port {
         Ok(elaborate(&block, "channel")?)
     }
 
+    /// The port in native code, after reset. A process compiles each port once.
     pub(in crate::campaign) fn engine(self) -> Result<Lanes, CampaignError> {
-        let design = self.design()?;
-        Ok(Lanes::new(&design, Keep::Registers, LaneWords::Two)?)
+        static ENGINES: Mutex<Vec<(Port, Lanes)>> = Mutex::new(Vec::new());
+        let lock = || ENGINES.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, engine)) = lock().iter().find(|(port, _)| *port == self) {
+            return Ok(engine.clone());
+        }
+        let engine = Lanes::new(&self.design()?, Keep::Registers, LaneWords::Two)?;
+        lock().push((self, engine.clone()));
+        Ok(engine)
     }
 }
 
