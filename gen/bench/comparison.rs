@@ -461,14 +461,26 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
     Ok(table)
 }
 
+/// The frames that tables of the page measure.
+const TIMES: CycleTimeOptions = CycleTimeOptions {
+    position_bits: None,
+    cable_m: 1,
+    tcal_ns: 5_000,
+    tm_ns: 10_000,
+};
+
+/// Two tables of the page, which take seconds: a measured one, and one of figures from synthesis.
+///
+/// # Errors
+/// As [`comparison`].
+pub fn comparison_sample() -> Result<[String; 2], GenError> {
+    let times = cycle_times(TIMES)?;
+    Ok([clb(&times.rows)?, asynchronous()?].map(|table| table.to_string()))
+}
+
 /// The page.
 pub fn comparison() -> Result<String, GenError> {
-    let times = cycle_times(CycleTimeOptions {
-        position_bits: None,
-        cable_m: 1,
-        tcal_ns: 5_000,
-        tm_ns: 10_000,
-    })?;
+    let times = cycle_times(TIMES)?;
     let rows = &times.rows;
     let mut page = format!(
         "# Comparison\n\nWhat the systems that this project learns from have published, beside what the same work measures here. The right column comes from runs of the presets as \

@@ -15,7 +15,7 @@ mod report;
 mod rust_engines;
 mod stimulus;
 
-pub use comparison::comparison;
+pub use comparison::{comparison, comparison_sample};
 pub use cycle_time::{cycle_times, CycleTime, CycleTimeOptions, CycleTimes, Published};
 pub use report::{Report, Row};
 pub use rust_engines::card_kernels;

