@@ -1,16 +1,12 @@
 //! Pulses on DATA that are shorter than the filter: nowhere in a frame do they change anything.
 
 use super::{count, run, Count, Kind};
-use crate::tools::third;
 use endat_sim::{
     campaign::{Case, Traces},
     line::{Glitch, Jitter, Wire},
     Time,
 };
 use rtl_design::engine::Compiled;
-
-/// What a change of it tries other widths by.
-const FILTER: &str = include_str!("../../../hdl/input_filter.rs");
 
 const FILTER_CYCLES: u64 = 3;
 
@@ -31,8 +27,8 @@ fn quiet(kind: Kind) -> (Case, Time, Time) {
     )
 }
 
-/// A glitch of this width at every third of a cycle of the last frame, each in a channel of its own.
-fn with_glitches(kind: Kind, width: f64) -> Vec<Case> {
+/// A glitch of this width at every third of a cycle of the last frame, each in a channel of its own; of those every `step`th.
+fn with_glitches(kind: Kind, width: f64, step: usize) -> Vec<Case> {
     let (case, from, until) = quiet(kind);
     let cycle = 1e12 / case.system_hz as f64;
     let count = ((until - from) as f64 / cycle * 3.0) as u64;
@@ -45,51 +41,100 @@ fn with_glitches(kind: Kind, width: f64) -> Vec<Case> {
         }];
         case
     };
-    (0..count).map(glitch).collect()
+    (0..count).step_by(step).map(glitch).collect()
+}
+
+/// Both inputs.
+const KINDS: [Kind; 2] = [Kind::single(16), Kind::double(16)];
+
+/// A part of the places for the quick tests: every third of a cycle at other places of a bit.
+const SOME: usize = 47;
+
+/// Runs glitches of these widths side by side. Gives a result for each width.
+fn of_widths(kind: Kind, widths: &[f64], step: usize) -> Vec<Vec<Count>> {
+    let cases: Vec<Vec<Case>> = (widths.iter())
+        .map(|width| with_glitches(kind, *width, step))
+        .collect();
+    let mut counts = run(&cases.concat(), 0).into_iter();
+    let of = |cases: &Vec<Case>| counts.by_ref().take(cases.len()).collect();
+    cases.iter().map(of).collect()
+}
+
+fn is_harmed(count: &Count) -> bool {
+    (count.good, count.wrong) != (count.frames, 0)
+}
+
+fn below_the_filter(step: usize) {
+    const WIDTHS: [f64; 4] = [0.4, 1.0, 1.9, 2.9];
+    for kind in KINDS {
+        let counts = of_widths(kind, &WIDTHS, step);
+        for (width, counts) in WIDTHS.iter().zip(counts) {
+            assert!(counts.len() > 1_000 / (1 + kind.double_edge as usize) / step);
+            let harmed = counts.iter().position(is_harmed);
+            assert_eq!(harmed, None, "{kind:?} {width}");
+        }
+    }
 }
 
 #[test]
+fn pulses_below_the_filter_have_no_effect() {
+    below_the_filter(SOME);
+}
+
+#[test]
+#[ignore = "slow: pulses at every third of a cycle of a frame"]
 fn pulses_below_the_filter_have_no_effect_at_any_phase() {
-    for kind in [Kind::single(16), Kind::double(16)] {
-        for &width in third(&[0.4, 1.0, 1.9, 2.9], FILTER.len()) {
-            let cases = with_glitches(kind, width);
-            assert!(cases.len() > 1_000 / (1 + kind.double_edge as usize));
-            for (i, got) in run(&cases, 0).iter().enumerate() {
-                assert_eq!(
-                    (got.good, got.wrong),
-                    (got.frames, 0),
-                    "{kind:?} {width} {i}"
-                );
-            }
-        }
-    }
+    below_the_filter(1);
 }
 
 /// Catches a filter that counts whole cycles only: 3.4 cycles are 6 or 7 looks.
+fn half_a_cycle_counts(step: usize) {
+    let cases = with_glitches(Kind::double(16), 3.4, step);
+    let mut both = cases.clone();
+    both.extend(cases.iter().cloned().map(|mut case| {
+        case.settings.filter_half = true;
+        case
+    }));
+    let counts = run(&both, 0);
+    let (without, with) = counts.split_at(cases.len());
+    let harmed = |counts: &[Count]| counts.iter().filter(|c| is_harmed(c)).count();
+    let count = harmed(without);
+    assert!(count > cases.len() / 100, "{count} of {}", cases.len());
+    assert_eq!(harmed(with), 0);
+}
+
 #[test]
 fn half_a_cycle_of_the_filter_counts() {
-    let mut cases = with_glitches(Kind::double(16), 3.4);
-    let is_harmed = |c: &Count| (c.good, c.wrong) != (c.frames, 0);
-    let harmed = run(&cases, 0).iter().filter(|c| is_harmed(c)).count();
-    assert!(harmed > cases.len() / 100, "{harmed} of {}", cases.len());
-    for case in &mut cases {
-        case.settings.filter_half = true;
-    }
-    let harmed = run(&cases, 0).iter().filter(|c| is_harmed(c)).count();
-    assert_eq!(harmed, 0);
+    half_a_cycle_counts(11);
+}
+
+#[test]
+#[ignore = "slow: pulses at every third of a cycle of a frame"]
+fn half_a_cycle_of_the_filter_counts_at_any_phase() {
+    half_a_cycle_counts(1);
 }
 
 /// Longer ones do harm, so the sweep above means something; they are told, but for what CRC5 cannot see.
-#[test]
-fn pulses_above_the_filter_are_told() {
-    for kind in [Kind::single(16), Kind::double(16)] {
-        for &width in third(&[5.0, 12.0, 24.0], FILTER.len()) {
-            let cases = with_glitches(kind, width);
-            let counts = run(&cases, 0);
+fn above_the_filter(step: usize) {
+    const WIDTHS: [f64; 3] = [5.0, 12.0, 24.0];
+    for kind in KINDS {
+        let counts = of_widths(kind, &WIDTHS, step);
+        for (width, counts) in WIDTHS.iter().zip(counts) {
             let bad: usize = counts.iter().map(|c| c.frames - c.good).sum();
             let wrong: usize = counts.iter().map(|c| c.wrong).sum();
-            assert!(width < 10.0 || bad > 0, "{kind:?} {width}");
+            assert!(*width < 10.0 || bad > 0, "{kind:?} {width}");
             assert!(wrong * 16 <= bad, "{kind:?} {width}: {wrong} of {bad}");
         }
     }
+}
+
+#[test]
+fn pulses_longer_than_the_filter_are_reported() {
+    above_the_filter(SOME);
+}
+
+#[test]
+#[ignore = "slow: pulses at every third of a cycle of a frame"]
+fn pulses_longer_than_the_filter_are_reported_at_any_phase() {
+    above_the_filter(1);
 }

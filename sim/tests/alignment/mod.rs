@@ -14,6 +14,7 @@ use endat_sim::{
     line::Jitter,
     Time,
 };
+use rtl_design::engine::LaneWords;
 
 /// What is run: system clock cycles in a bit, and on which edges DATA is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,6 +124,10 @@ pub fn count(case: &Case, traces: &Traces<'_>, first: usize) -> Count {
 pub fn run(cases: &[Case], warm_up: usize) -> Vec<Count> {
     let options = RunOptions {
         samples: false,
+        lanes: match cases.len() {
+            0..=64 => LaneWords::One,
+            _ => LaneWords::Two,
+        },
         ..RunOptions::default()
     };
     let judge =

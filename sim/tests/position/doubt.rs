@@ -342,13 +342,12 @@ fn a_limit_of_zero_does_not_shorten_the_quiet_time() {
 
 /// Where the clock is slow, an encoder of another width can end its frame between two pulses and look like a good one. The position
 /// comes from the frame at the full clock behind it.
-#[test]
-fn an_encoder_of_another_width_gives_no_position_while_the_delay_is_measured() {
+fn other_widths(seeds: u64) {
     let setup = Setup::card();
     let measured = setup.measured();
     let (mut slow, mut looked_good) = (0, 0);
     for bits in (8..=48).filter(|n| *n != setup.encoder.position_bits) {
-        for seed in 0..4 {
+        for seed in 0..seeds {
             let mut other = setup.clone();
             other.encoder.position_bits = bits;
             other.encoder.seed = seed * 64 + u64::from(bits);
@@ -370,5 +369,20 @@ fn an_encoder_of_another_width_gives_no_position_while_the_delay_is_measured() {
             }
         }
     }
-    assert!(slow > 40 && looked_good > 10, "{slow} {looked_good}");
+    // In one run there is about one of these for each width, and every fourth looks good.
+    assert!(
+        slow > 10 * seeds && looked_good as u64 * 4 > 10 * seeds,
+        "{slow} {looked_good}"
+    );
+}
+
+#[test]
+fn an_encoder_of_another_width_gives_no_position_while_the_delay_is_measured() {
+    other_widths(1);
+}
+
+#[test]
+#[ignore = "slow: four times as many encoders"]
+fn no_encoder_of_another_width_gives_a_position_while_the_delay_is_measured() {
+    other_widths(4);
 }

@@ -78,15 +78,14 @@ fn assert_right(rig: &Rig, endat_hz: u64) {
     }
 }
 
-#[test]
-fn positions_flow_at_every_width_rate_and_length() {
+fn positions_flow(widths: &[u32]) {
     for (endat_hz, cable_m) in [
         (200_000, 0.0),
         (1_000_000, 100.0),
         (2_000_000, 100.0),
         (12_500_000, 100.0),
     ] {
-        for bits in [1, 3, 13, 18, 29, 33, 48] {
+        for &bits in widths {
             for edge in EDGES {
                 let mut rig = rig(endat_hz, encoder(bits, edge), LineConfig::cable(cable_m));
                 run(&mut rig, 6);
@@ -102,6 +101,17 @@ fn positions_flow_at_every_width_rate_and_length() {
             }
         }
     }
+}
+
+#[test]
+fn positions_flow_at_every_rate_and_length() {
+    positions_flow(&[1, 48]);
+}
+
+#[test]
+#[ignore = "slow: seven widths"]
+fn positions_flow_at_every_width_rate_and_length() {
+    positions_flow(&[1, 3, 13, 18, 29, 33, 48]);
 }
 
 #[test]
@@ -125,10 +135,9 @@ fn triggers_neither_disturb_a_run_nor_count_as_lost() {
 }
 
 /// The encoder is left at whatever moment; the next frame is good.
-#[test]
-fn a_run_is_left_at_every_moment() {
+fn left_every(step_ns: usize) {
     for edge in EDGES {
-        for wait in (0..40_000).step_by(250) {
+        for wait in (0..40_000).step_by(step_ns) {
             let mut rig = rig(2_000_000, encoder(13, edge), LineConfig::cable(50.0));
             run(&mut rig, 2);
             rig.bench.run_for(wait * NS);
@@ -137,6 +146,17 @@ fn a_run_is_left_at_every_moment() {
             rig.assert_clean();
         }
     }
+}
+
+#[test]
+fn a_run_is_left_at_moments_of_a_frame() {
+    left_every(4_250);
+}
+
+#[test]
+#[ignore = "slow: every half clock period of a frame"]
+fn a_run_is_left_at_every_moment() {
+    left_every(250);
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! What is wrong with a line or an encoder, told apart, within its limit and at every phase of a frame.
 
 use super::rig::Rig;
-use crate::tools::third;
 use endat_hdl::endat::{
     timing::{recovery_min_cycles, PROBE_US, RECOVERY_MIN_NS, SETTLE_US},
     transaction::cause::{self, flag},
@@ -91,17 +90,17 @@ fn a_late_start_bit_is_told_from_a_silent_encoder() {
     }
 }
 
-/// Half clock periods of a frame; a third of them.
-fn phases() -> Vec<Time> {
-    let all: Vec<Time> = (0..FRAME_LENGTH).step_by(HALF as usize).collect();
-    let line = include_str!("../../../hdl/endat/line_health.rs");
-    third(&all, line.len()).copied().collect()
+/// So many half clock periods apart in the quick tests: odd, for both levels of CLOCK.
+const SOME: usize = 29;
+
+/// Every `step`th half clock period of a frame.
+fn phases(step: usize) -> impl Iterator<Item = Time> {
+    (0..FRAME_LENGTH).step_by(step * HALF as usize)
 }
 
-#[test]
-fn a_line_stuck_at_any_phase_has_its_cause_and_comes_back() {
+fn stuck_every(step: usize) {
     for level in [false, true] {
-        for from in phases() {
+        for from in phases(step) {
             let until = FRAME + WRONG;
             let mut line = LineConfig::cable(10.0);
             line.stuck = Some(Stuck {
@@ -137,8 +136,18 @@ fn a_line_stuck_at_any_phase_has_its_cause_and_comes_back() {
 }
 
 #[test]
-fn an_encoder_unplugged_at_any_phase_is_no_encoder_and_comes_back() {
-    for from in phases() {
+fn a_stuck_line_has_its_cause_and_comes_back() {
+    stuck_every(SOME);
+}
+
+#[test]
+#[ignore = "slow: every half clock period of a frame"]
+fn a_line_stuck_at_any_phase_has_its_cause_and_comes_back() {
+    stuck_every(1);
+}
+
+fn unplugged_every(step: usize) {
+    for from in phases(step) {
         let until = FRAME + WRONG;
         let mut encoder = encoder();
         encoder.unplugged.push(FRAME + from..until);
@@ -172,8 +181,18 @@ fn an_encoder_unplugged_at_any_phase_is_no_encoder_and_comes_back() {
 }
 
 #[test]
-fn the_watchdog_ends_a_frame_wherever_it_is() {
-    for limit in 1..80 {
+fn an_unplugged_encoder_is_no_encoder_and_comes_back() {
+    unplugged_every(SOME);
+}
+
+#[test]
+#[ignore = "slow: every half clock period of a frame"]
+fn an_encoder_unplugged_at_any_phase_is_no_encoder_and_comes_back() {
+    unplugged_every(1);
+}
+
+fn watchdog(limits_us: impl Iterator<Item = u64>) {
+    for limit in limits_us.map(u128::from) {
         let mut rig = rig(encoder(), LineConfig::cable(10.0));
         rig.bench.run_until(FRAME);
         rig.bench.set("watchdog_us", limit);
@@ -205,6 +224,17 @@ fn the_watchdog_ends_a_frame_wherever_it_is() {
         recovers(&mut rig);
         assert_eq!(rig.bench.conflicts(0), []);
     }
+}
+
+#[test]
+fn the_watchdog_ends_a_frame() {
+    watchdog((1..80).step_by(6));
+}
+
+#[test]
+#[ignore = "slow: every microsecond of a frame"]
+fn the_watchdog_ends_a_frame_wherever_it_is() {
+    watchdog(1..80);
 }
 
 #[test]
@@ -278,9 +308,8 @@ fn an_echo_of_the_own_command_is_no_answer() {
     }
 }
 
-/// What docs/programming.md says of a card that was wired wrongly, or has another encoder than it is configured for.
-#[test]
-fn a_wrong_wiring_and_a_wrong_width_have_the_causes_of_the_table() {
+/// docs/programming.md lists these causes for a card that is wired wrongly or configured for another encoder.
+fn wrong_wiring_and_widths(widths: impl Iterator<Item = u32>) {
     for (kind, expected) in [
         (FaultKind::Swapped, cause::NO_ENCODER),
         (FaultKind::ToClock, cause::STUCK_HIGH),
@@ -294,7 +323,7 @@ fn a_wrong_wiring_and_a_wrong_width_have_the_causes_of_the_table() {
             assert_eq!(bad(&mut rig).last_cause(), expected, "{kind:?}");
         }
     }
-    for bits in (13..=40).filter(|bits| *bits != 29) {
+    for bits in widths.filter(|bits| *bits != 29) {
         let line = LineConfig::cable(10.0);
         let mut rig = Rig::with(SYSTEM_HZ, settings(), EncoderConfig::endat22(bits), line);
         let causes: Vec<u64> = (0..6).map(|_| bad(&mut rig).last_cause()).collect();
@@ -304,4 +333,15 @@ fn a_wrong_wiring_and_a_wrong_width_have_the_causes_of_the_table() {
             "{bits}: {causes:?}"
         );
     }
+}
+
+#[test]
+fn a_wrong_wiring_and_a_wrong_width_have_the_causes_of_the_table() {
+    wrong_wiring_and_widths([13, 25, 28, 30, 37].into_iter());
+}
+
+#[test]
+#[ignore = "slow: every width from 13 to 40"]
+fn a_wrong_width_has_the_causes_of_the_table_whatever_it_is() {
+    wrong_wiring_and_widths(13..=40);
 }

@@ -47,6 +47,19 @@ fn places() -> impl Iterator<Item = Time> {
         .take_while(|t| *t < FRAME_TIME + RECOVERY)
 }
 
+/// So many places apart in the quick tests.
+const SOME: usize = 9;
+
+/// Every `step`th of the faults, and the bounds of how many are good and bad for as many.
+fn run_some(faults: Vec<Fault>, step: usize, [good_min, bad_min]: [usize; 2]) {
+    let some: Vec<Fault> = faults.into_iter().step_by(step).collect();
+    let [good, bad, _] = run(&some);
+    assert!(
+        good * step >= good_min && bad * step >= bad_min,
+        "{good} {bad}"
+    );
+}
+
 /// Runs the frame with its fault, then triggers until all is well again. Gives good and bad results, and wrong ones with a right CRC.
 fn run(faults: &[Fault]) -> [usize; 3] {
     let mut counts = [0; 3];
@@ -112,8 +125,7 @@ fn run(faults: &[Fault]) -> [usize; 3] {
     counts
 }
 
-#[test]
-fn a_line_stuck_or_open_from_any_bit_on() {
+fn stuck_or_open(step: usize) {
     let stuck = |level| move |bit| defect(Defect::StuckFrom { bit, level });
     let faults: Vec<Fault> = (0..=ANSWER)
         .flat_map(|bit| {
@@ -124,13 +136,22 @@ fn a_line_stuck_or_open_from_any_bit_on() {
             ]
         })
         .collect();
-    let [good, bad, _] = run(&faults);
-    // What comes behind the position spoils it no more.
-    assert!(good >= 3 * 60 && bad > 40, "{good} {bad}");
+    // A fault after the position does not spoil it.
+    run_some(faults, step, [3 * 60, 41]);
 }
 
 #[test]
-fn an_encoder_lost_at_any_half_clock_period() {
+fn a_line_stuck_or_open_from_a_bit_on() {
+    stuck_or_open(4);
+}
+
+#[test]
+#[ignore = "slow: every bit"]
+fn a_line_stuck_or_open_from_any_bit_on() {
+    stuck_or_open(1);
+}
+
+fn lost(step: usize) {
     let lost = |after, length| {
         let mut fault = defect(Defect::BrownOut { after, length });
         fault.lasts = length;
@@ -140,12 +161,21 @@ fn an_encoder_lost_at_any_half_clock_period() {
         .into_iter()
         .flat_map(|length| places().map(move |after| lost(after, length)))
         .collect();
-    let [good, bad, _] = run(&faults);
-    assert!(good > 300 && bad > 150, "{good} {bad}");
+    run_some(faults, step, [301, 151]);
 }
 
 #[test]
-fn a_glitch_on_either_wire_at_any_half_clock_period() {
+fn an_encoder_lost_in_a_frame() {
+    lost(SOME);
+}
+
+#[test]
+#[ignore = "slow: every half clock period"]
+fn an_encoder_lost_at_any_half_clock_period() {
+    lost(1);
+}
+
+fn glitches(step: usize) {
     let mut faults = vec![];
     for (wire, widths) in [
         (Wire::Data, [125 * NS, 500 * NS, 5 * US, 30 * US]),
@@ -167,20 +197,39 @@ fn a_glitch_on_either_wire_at_any_half_clock_period() {
             }
         }
     }
-    let [good, bad, _] = run(&faults);
-    assert!(good > 500 && bad > 200, "{good} {bad}");
+    run_some(faults, step, [501, 201]);
 }
 
 #[test]
-fn clock_pulses_that_the_encoder_misses_or_sees_twice() {
+fn a_glitch_on_either_wire_in_a_frame() {
+    glitches(2 * SOME + 1);
+}
+
+#[test]
+#[ignore = "slow: every half clock period"]
+fn a_glitch_on_either_wire_at_any_half_clock_period() {
+    glitches(1);
+}
+
+fn missed_or_doubled(step: usize) {
     let faults: Vec<Fault> = (1..=PULSES)
         .flat_map(|n| [defect(Defect::MissEdge(n)), defect(Defect::DoubleEdge(n))])
         .collect();
-    run(&faults);
+    run_some(faults, step, [0, 0]);
 }
 
 #[test]
-fn an_encoder_that_is_wrong_in_what_it_sends() {
+fn some_clock_pulses_that_the_encoder_misses_or_sees_twice() {
+    missed_or_doubled(3);
+}
+
+#[test]
+#[ignore = "slow: every pulse"]
+fn clock_pulses_that_the_encoder_misses_or_sees_twice() {
+    missed_or_doubled(1);
+}
+
+fn wrong_answers(step: usize) {
     let mut faults: Vec<Fault> = (0..ANSWER)
         .map(|bit| defect(Defect::FlipBits(1 << bit)))
         .collect();
@@ -202,12 +251,21 @@ fn an_encoder_that_is_wrong_in_what_it_sends() {
             .map(|n| defect(Defect::WiderBy(n))),
     );
     faults.push(defect(Defect::WithoutF2));
-    let [good, bad, _] = run(&faults);
-    assert!(good > 150 && bad > 80, "{good} {bad}");
+    run_some(faults, step, [151, 81]);
 }
 
 #[test]
-fn an_encoder_that_is_silent_early_or_late() {
+fn some_answers_of_an_encoder_that_are_wrong() {
+    wrong_answers(5);
+}
+
+#[test]
+#[ignore = "slow: every bit, every wrong CRC, every half clock period"]
+fn an_encoder_that_is_wrong_in_what_it_sends() {
+    wrong_answers(1);
+}
+
+fn silent_early_or_late(step: usize) {
     let mut faults = vec![defect(Defect::NoStartBit), defect(Defect::Open)];
     faults.extend((1..40).map(|edge| defect(Defect::StartAtEdge(edge))));
     faults.extend((1..240).map(|i| defect(Defect::LateStart(i * HALF_PERIOD))));
@@ -217,6 +275,16 @@ fn an_encoder_that_is_silent_early_or_late() {
             faults.push(late);
         }
     }
-    let [good, bad, _] = run(&faults);
-    assert!(good > 400 && bad > 20, "{good} {bad}");
+    run_some(faults, step, [401, 21]);
+}
+
+#[test]
+fn an_encoder_that_is_silent_or_late() {
+    silent_early_or_late(5);
+}
+
+#[test]
+#[ignore = "slow: every clock edge, every half clock period"]
+fn an_encoder_that_is_silent_early_or_late() {
+    silent_early_or_late(1);
 }

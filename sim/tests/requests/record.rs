@@ -27,6 +27,26 @@ const RECOVERIES: [Time; 11] = [
     20 * US,
     30 * US,
 ];
+/// Recovery times, calculation times and EnDat clocks that are combined.
+struct Times {
+    recovery: &'static [Time],
+    calculation: &'static [Time],
+    endat_hz: &'static [u64],
+}
+
+/// All of the recovery times, with three calculation times at five rates.
+const ALL: Times = Times {
+    recovery: &RECOVERIES,
+    calculation: &[US, 5 * US, 12 * US],
+    endat_hz: &[200_000, 500_000, 1_000_000, 2_000_000, 4_000_000],
+};
+/// The shortest, the longest, and either side of half a period of the calibration clock.
+const SOME: Times = Times {
+    recovery: &[1_250 * NS, 2_300 * NS, 2_600 * NS, 30 * US],
+    calculation: &[5 * US],
+    endat_hz: &[200_000, 1_000_000, 4_000_000],
+};
+
 /// Below 10 us there are recovery times only with a clock of 1 MHz or more.
 const LONG_RECOVERY: Time = 10 * US;
 
@@ -37,11 +57,11 @@ struct Story {
 }
 
 /// Every recovery time with every calculation time and rate, and these mishaps.
-fn stories(defects: &[Defect]) -> Vec<Story> {
+fn stories(times: &Times, defects: &[Defect]) -> Vec<Story> {
     let mut stories = vec![];
-    for tm in RECOVERIES {
-        for tcal in [US, 5 * US, 12 * US] {
-            for endat_hz in [200_000, 500_000, 1_000_000, 2_000_000, 4_000_000] {
+    for &tm in times.recovery {
+        for &tcal in times.calculation {
+            for &endat_hz in times.endat_hz {
                 if tm < LONG_RECOVERY && endat_hz < 1_000_000 {
                     continue;
                 }
@@ -63,8 +83,8 @@ fn stories(defects: &[Defect]) -> Vec<Story> {
 }
 
 /// Runs them with these additional data selected; all are well again after the second trigger at the latest.
-fn run(codes: [u8; 2], defects: &[Defect]) {
-    let stories = stories(defects);
+fn run(times: &Times, codes: [u8; 2], defects: &[Defect]) {
+    let stories = stories(times, defects);
     for stories in stories.chunks(LANES) {
         let cases: Vec<_> = stories
             .iter()
@@ -107,15 +127,24 @@ fn stuck_low(bits: &[u32]) -> Vec<Defect> {
 }
 
 /// DATA LOW in an answer looks as if additional data followed it.
-#[test]
-fn a_frame_of_zeros_teaches_no_additional_data_at_any_recovery_time() {
+fn zeros(times: &Times) {
     // 0x4F and 0x5F: none is selected.
-    run([0x4F, 0x5F], &stuck_low(&[1, 3, 10, 17, 20, 21]));
+    run(times, [0x4F, 0x5F], &stuck_low(&[1, 3, 10, 17, 20, 21]));
+}
+
+#[test]
+fn a_frame_of_zeros_teaches_no_additional_data() {
+    zeros(&SOME);
+}
+
+#[test]
+#[ignore = "slow: every recovery time, calculation time and rate"]
+fn a_frame_of_zeros_teaches_no_additional_data_at_any_recovery_time() {
+    zeros(&ALL);
 }
 
 /// The encoder has forgotten its selection, and a short recovery time ends before half a period of the calibration clock does.
-#[test]
-fn additional_data_that_are_gone_are_forgotten_at_any_recovery_time() {
+fn gone(times: &Times, selections: &[[u8; 2]]) {
     let lost = Defect::BrownOut {
         after: 9 * US,
         length: 3 * US,
@@ -127,15 +156,39 @@ fn additional_data_that_are_gone_are_forgotten_at_any_recovery_time() {
             level: true,
         },
     ];
-    for codes in [[0x4C, 0x5F], [0x5B, 0x4F], [0x4C, 0x5B]] {
-        run(codes, &defects);
+    for codes in selections {
+        run(times, *codes, &defects);
     }
 }
 
-/// They are there all the time, and what a disturbed frame seems to say about them does not last.
+/// Additional data 1, 2, and both.
+const SELECTIONS: [[u8; 2]; 3] = [[0x4C, 0x5F], [0x5B, 0x4F], [0x4C, 0x5B]];
+
 #[test]
-fn additional_data_that_are_there_are_found_at_any_recovery_time() {
-    for codes in [[0x4C, 0x5F], [0x5B, 0x4F], [0x4C, 0x5B]] {
-        run(codes, &stuck_low(&[2, 18, 21, 22, 40, 51]));
+fn additional_data_that_are_gone_are_forgotten() {
+    gone(&SOME, &SELECTIONS);
+}
+
+#[test]
+#[ignore = "slow: every recovery time, calculation time and rate"]
+fn additional_data_that_are_gone_are_forgotten_at_any_recovery_time() {
+    gone(&ALL, &SELECTIONS);
+}
+
+/// They are there all the time, and what a disturbed frame seems to say about them does not last.
+fn present(times: &Times, selections: &[[u8; 2]]) {
+    for codes in selections {
+        run(times, *codes, &stuck_low(&[2, 18, 21, 22, 40, 51]));
     }
+}
+
+#[test]
+fn additional_data_that_are_there_are_found() {
+    present(&SOME, &SELECTIONS[2..]);
+}
+
+#[test]
+#[ignore = "slow: every recovery time, calculation time and rate"]
+fn additional_data_that_are_there_are_found_at_any_recovery_time() {
+    present(&ALL, &SELECTIONS);
 }

@@ -1,7 +1,6 @@
 //! Seconds of a busy host: the words that it reads and writes cost no sample.
 
 use super::rig::{quick, Make, Rig};
-use crate::tools::is_whole;
 use endat_hdl::endat::{
     service::map::{request_state, word},
     transaction::cause,
@@ -18,14 +17,6 @@ use std::{collections::BTreeSet, thread};
 const SYSTEM_HZ: u64 = 10_000_000;
 const ENDAT_HZ: u64 = SYSTEM_HZ / 8;
 const SAMPLE_HZ: u64 = 10_000;
-/// In a whole run ten of them: a hundred thousand samples.
-fn seconds() -> u64 {
-    if is_whole() {
-        10
-    } else {
-        3
-    }
-}
 /// Runs side by side that share them.
 const PARTS: u64 = 2;
 
@@ -81,8 +72,8 @@ impl Host {
     }
 }
 
-/// A part of the run.
-fn part(seed: u64) {
+/// One run of so many samples.
+fn part(seed: u64, samples: u64) {
     const PERIOD: u64 = SYSTEM_HZ / SAMPLE_HZ;
     let encoder = EncoderConfig::endat22(13).position(PositionSource::Random);
     let mut encoder = quick(encoder).seed(seed);
@@ -101,7 +92,7 @@ fn part(seed: u64) {
         expected: None,
     };
     let mut triggers = vec![];
-    for _ in 0..seconds() * SAMPLE_HZ / PARTS {
+    for _ in 0..samples {
         triggers.push(rig.bench.now());
         rig.bench.trigger();
         let end = rig.bench.cycle() + PERIOD;
@@ -131,11 +122,22 @@ fn part(seed: u64) {
     rig.assert_clean();
 }
 
-#[test]
-fn seconds_of_requests_cost_not_one_sample() {
+/// Runs this many samples in all.
+fn run(samples: u64) {
     thread::scope(|scope| {
         for seed in 1..=PARTS {
-            scope.spawn(move || part(seed));
+            scope.spawn(move || part(seed, samples / PARTS));
         }
     });
+}
+
+#[test]
+fn requests_cost_no_sample() {
+    run(SAMPLE_HZ / 4);
+}
+
+#[test]
+#[ignore = "slow: ten seconds, a hundred thousand samples"]
+fn ten_seconds_of_requests_cost_no_sample() {
+    run(10 * SAMPLE_HZ);
 }

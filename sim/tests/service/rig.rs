@@ -28,7 +28,7 @@ use std::{
 };
 
 /// System clock of these tests.
-pub const SYSTEM_HZ: u64 = 32_000_000;
+pub const SYSTEM_HZ: u64 = 16_000_000;
 /// EnDat clock.
 pub const ENDAT_HZ: u64 = 2_000_000;
 /// Longer than any request or initialisation.
