@@ -6,9 +6,8 @@ mod driver;
 #[allow(dead_code)] // other topics take the rest
 mod emitted;
 mod host;
+mod made;
 mod own_triggers;
-#[allow(dead_code)] // other topics take the rest
-mod passed;
 mod presets;
 #[allow(dead_code)] // other topics take the rest
 mod program;

@@ -1,6 +1,6 @@
 //! A host at the UART of a card on its bench.
 
-use endat_gen::config::load_preset;
+use endat_gen::config::{parse, preset, Project};
 use endat_hdl::{
     config::CardConfig,
     regs::{Block, Register},
@@ -9,7 +9,6 @@ use endat_sim::{
     bench::{Bench, Link, PinNames},
     MS,
 };
-use rtl_design::elaborate::{elaborate, Design};
 use rtl_design::engine::Compiled;
 
 /// System clock cycles in a UART bit.
@@ -21,23 +20,36 @@ pub struct Host {
     pub bench: Bench<Compiled>,
 }
 
-/// The card of a preset, with a quick UART.
-pub fn card(preset: &str) -> CardConfig {
-    let mut config = load_preset(preset).unwrap().card;
+/// The card of a preset for a system clock of 100 MHz, at this clock (a multiple of 25 MHz), with a quick UART and without its board.
+pub fn card(name: &str, system_mhz: u64) -> CardConfig {
+    card_with(name, system_mhz, str::to_owned)
+}
+
+/// The same with a change of its configuration.
+pub fn card_with(name: &str, system_mhz: u64, change: impl Fn(&str) -> String) -> CardConfig {
+    let mut config = project(name, system_mhz, change).card;
     config.uart_bit_cycles = BIT;
     config
 }
 
-impl Host {
-    /// A card with a link on each channel, reset.
-    pub fn new(mut card: impl rust_hdl::prelude::Block, system_hz: u64, links: Vec<Link>) -> Self {
-        card.connect_all();
-        Self::of_design(&elaborate(&card, "card").unwrap(), system_hz, links)
+/// The same as a project, with a UART of 3.125 MHz.
+pub fn project(name: &str, system_mhz: u64, change: impl Fn(&str) -> String) -> Project {
+    let text = preset(name).unwrap().split("\n[board]").next().unwrap();
+    let mut text = text.to_owned();
+    let system = format!("system_hz = {}", system_mhz * 1_000_000);
+    for (from, to) in [
+        ("system_hz = 100_000_000", system.as_str()),
+        ("baud = 3_000_000", "baud = 3_125_000"),
+    ] {
+        assert!(text.contains(from), "{name}: {from}");
+        text = text.replacen(from, to, 1);
     }
+    parse("card.toml", &change(&text)).unwrap()
+}
 
-    /// The same of a card that is elaborated already.
-    pub fn of_design(design: &Design, system_hz: u64, links: Vec<Link>) -> Self {
-        let engine = Compiled::new(design).unwrap();
+impl Host {
+    /// This card with a link on each channel, reset.
+    pub fn new(engine: Compiled, system_hz: u64, links: Vec<Link>) -> Self {
         let links = links.into_iter().enumerate();
         let links = links.map(|(n, link)| (PinNames::card(n), link)).collect();
         let mut bench = Bench::new(engine, system_hz, links);

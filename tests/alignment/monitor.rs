@@ -2,7 +2,7 @@
 
 use endat_hdl::endat::line_delay::mode;
 use endat_hdl::{
-    card::Card,
+    card::service_times,
     config::LineParts,
     regs::{BLOCKS, LINE, RESULT},
 };
@@ -19,7 +19,7 @@ struct Host(crate::host::Host);
 impl Host {
     /// A card with a sound line on channel 0, and one with jitter on channel 1.
     fn new(jitter_ns: u64, drift: i64) -> Self {
-        let mut config = crate::host::card("s6_two_channel");
+        let mut config = crate::host::card("s6_two_channel", 100);
         config.line = LineParts {
             alignment: true,
             margin: true,
@@ -37,7 +37,7 @@ impl Host {
             line.data_in.drift = drift;
             Link::new(line, encoder)
         };
-        let card = Card::with_timeout(&config, 100);
+        let card = crate::made::uart_card(&config, &service_times(&config), 100);
         let links = vec![link(0, 0), link(jitter_ns, drift)];
         Self(crate::host::Host::new(card, config.system_hz, links))
     }

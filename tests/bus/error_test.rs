@@ -13,8 +13,14 @@ use std::collections::BTreeSet;
 const PARTS: &str = "[service]\nparts = [\"requests\", \"continuous\"]\n[safety]\n\
      parts = [\"second_receiver\", \"error_test\"]\nerror_test_ms = 12345\n";
 
+/// Cycles of a microsecond: few, because the schedule counts milliseconds.
+const US: u64 = 20;
+
 fn card(first: EncoderConfig) -> Master {
-    let project = parse("card.toml", &text(HostBus::Wishbone, PARTS)).unwrap();
+    let text = text(HostBus::Wishbone, PARTS)
+        .replace("100_000_000", "20_000_000")
+        .replace("3_125_000", "2_000_000");
+    let project = parse("card.toml", &text).unwrap();
     Master::with_encoders(&project, vec![(0, first), (1, sound(1, 25))])
 }
 
@@ -47,7 +53,7 @@ fn each_error_is_forced_in_turn_and_no_trigger_sees_it() {
     let lost = at(&SERVICE, "lost", 0);
     for round in 0..26 {
         master.write(at(&CARD, "trigger_now", 0), 1);
-        master.bench.run_cycles(40_000);
+        master.bench.run_cycles(400 * US);
         for channel in 0..2 {
             let status = master.read(at(&RESULT, "status", channel));
             let of = |name| RESULT.field("status", name).of(status);
@@ -87,11 +93,11 @@ fn without_triggers_it_goes_on_and_zero_stops_it() {
     let mut master = card(sound(0, 29));
     frame(&mut master);
     schedule(&mut master, 1);
-    master.bench.run_cycles(2_500_000);
+    master.bench.run_cycles(25_000 * US);
     let (told, silent) = state_of(&mut master, 0);
     assert!((2..=3).contains(&told) && silent == 0, "{told} {silent}");
     schedule(&mut master, 0);
-    master.bench.run_cycles(1_500_000);
+    master.bench.run_cycles(15_000 * US);
     let (after, _) = state_of(&mut master, 0);
     assert!(after <= told + 1);
     let result = master.read(at(&RESULT, "status", 0));
@@ -111,7 +117,7 @@ fn an_error_that_is_not_told_raises_the_alarm_until_it_is_cleared() {
     let mut master = card(sound(0, 29).defect(3, alarm));
     frame(&mut master);
     schedule(&mut master, 1);
-    master.bench.run_cycles(3_500_000);
+    master.bench.run_cycles(35_000 * US);
     let seen = state_of(&mut master, 0);
     assert!(seen.0 > 0 && seen.1 == 1, "{seen:?}");
     let bits = u32::from(state::ERROR_TEST);
@@ -119,7 +125,7 @@ fn an_error_that_is_not_told_raises_the_alarm_until_it_is_cleared() {
     assert_eq!(word(&mut master, "state", 1) & bits, 0);
     assert_eq!(state_of(&mut master, 1).1, 0);
     master.write(at(&SERVICE, "control", 0), control::CLEAR.into());
-    master.bench.run_cycles(20_000);
+    master.bench.run_cycles(200 * US);
     assert_eq!(word(&mut master, "state", 0) & bits, 0);
     assert_eq!(state_of(&mut master, 0).1, 0);
 }
@@ -147,7 +153,7 @@ fn the_host_keeps_its_requests_and_its_own_forced_errors() {
         master.write(request, 0x0E << 24 | address << 16);
         let mut finished = 1;
         for _ in 0..100 {
-            master.bench.run_cycles(100_000);
+            master.bench.run_cycles(1_000 * US);
             finished = word(&mut master, "request_state", 0);
             if finished & 1 == 0 {
                 break;

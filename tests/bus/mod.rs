@@ -17,6 +17,7 @@ mod three_ways;
 mod uart;
 
 use crate::bus_card::text;
+use crate::made;
 use endat_gen::config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CardConfig;
@@ -26,7 +27,6 @@ use endat_sim::encoder::EncoderConfig;
 use endat_sim::line::LineConfig;
 use endat_sim::rng::Rng;
 use endat_sim::US;
-use rtl_design::elaborate::Design;
 use rtl_design::engine::Compiled;
 
 /// Every front with words of 32 bits.
@@ -45,7 +45,7 @@ pub fn at(block: &Block, name: &str, channel: usize) -> u16 {
 /// Triggers, and runs to the end of everything.
 pub fn frame(master: &mut Master) {
     master.write(at(&CARD, "trigger_now", 0), 1);
-    master.bench.run_cycles(60_000);
+    master.bench.run_for(600 * US);
 }
 
 /// An access that a master makes, and what it gives.
@@ -71,7 +71,7 @@ pub struct Master {
     pub rng: Rng,
 }
 
-/// An encoder that makes nobody wait.
+/// An encoder with a short recovery time.
 pub fn sound(seed: u64, position_bits: u32) -> EncoderConfig {
     let mut encoder = EncoderConfig::endat22(position_bits).seed(seed);
     encoder.tm = 10 * US..=12 * US;
@@ -109,18 +109,16 @@ impl Master {
         encoders: Vec<(usize, EncoderConfig)>,
         cable_m: f64,
     ) -> Self {
-        let design = endat_gen::design(project).unwrap();
-        Self::of_design(&design, project, encoders, cable_m)
+        Self::of_engine(made::card(project), project, encoders, cable_m)
     }
 
-    /// The same with another card behind that bus, one with shorter waits.
-    pub fn of_design(
-        design: &Design,
+    /// The same with this card, which may have shorter waits than the project's.
+    pub fn of_engine(
+        engine: Compiled,
         project: &Project,
         encoders: Vec<(usize, EncoderConfig)>,
         cable_m: f64,
     ) -> Self {
-        let engine = Compiled::new(design).unwrap();
         let link = |(n, encoder)| {
             let port = PinNames::card(n);
             (port, Link::new(LineConfig::cable(cable_m), encoder))

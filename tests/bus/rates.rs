@@ -41,10 +41,12 @@ fn seven_rates_at_run_time_and_two_of_them_at_once() {
             let word = master.read(limits) & !0xfff;
             master.write(limits, word | 100);
         }
-        // The first frames measure the delay.
+        // The first frames measure the delay. A frame has at most 64 periods, then the recovery time.
+        let slowest_hz = rates[0].0.min(rates[1].0);
+        let frame_us = 60 + 64_000_000 / slowest_hz;
         for _ in 0..=CALIBRATION_FRAMES {
             master.write(at(&CARD, "trigger_now", 0), 1);
-            master.bench.run_cycles(700 * system_hz / 1_000_000);
+            master.bench.run_cycles(frame_us * system_hz / 1_000_000);
         }
         for (channel, (hz, _)) in rates.into_iter().enumerate() {
             let status = master.read(at(&RESULT, "status", channel));

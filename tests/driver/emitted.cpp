@@ -11,7 +11,7 @@ static VerilatedContext *context;
 static Vemitted *top;
 static unsigned card; // 0 AXI4-Lite, 1 SPI
 static uint64_t plug_at_us[2];
-static const uint64_t HALF_PS = 31250; // 16 MHz
+static const uint64_t HALF_PS = 62500; // 8 MHz
 static const unsigned WIDTH[2] = {29, 25};
 static uint32_t spoilt_in[2]; // number of the frame behind the spoilt one
 

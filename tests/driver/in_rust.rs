@@ -1,9 +1,8 @@
 //! The driver in Rust, at the same fronts.
 
-use super::everything;
-use super::rig::{self, Rig, ALL_PARTS, WIDTHS};
+use super::rig::{self, Rig, ALL_PARTS, ENDAT_HZ, WIDTHS};
 use super::world::World;
-use crate::tools::third;
+use super::{everything, OTHER_BUSES};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use endat_driver::regs::Protocol;
@@ -109,8 +108,11 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
         );
         self.card.select_additional_data(0, &[0x4C]).unwrap();
         // The card finds out what comes: one or two frames end with the pause of an aborted one.
+        let is_there = |moment: &Moment| moment.results()[0].infos[0].came;
         for _ in 0..4 {
-            let _ = self.card.measure(5_000);
+            if self.card.measure(5_000).is_ok_and(|moment| is_there(&moment)) {
+                break;
+            }
             self.world.pause_us(32_000);
         }
         let moment = self.card.measure(5_000).unwrap();
@@ -130,7 +132,7 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
         let card = &mut self.card;
         let before = card.read_settings(0).unwrap();
         assert_eq!(before.position_bits, WIDTHS[0]);
-        assert_eq!(before.period_cycles, card.period_cycles(2_000_000));
+        assert_eq!(before.period_cycles, card.period_cycles(ENDAT_HZ));
         for wrong in [
             endat_driver::Settings {
                 period_cycles: 3,
@@ -152,7 +154,7 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
             assert_eq!(card.write_settings(0, &wrong), Err(Error::Argument));
         }
         let slow = endat_driver::Settings {
-            period_cycles: card.period_cycles(1_000_000),
+            period_cycles: card.period_cycles(ENDAT_HZ / 2),
             start_window_cycles: before.start_window_cycles + 1,
             ..before
         };
@@ -255,7 +257,7 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
     fn plug(&mut self, has_service: bool) {
         let good = self.measure_well().results()[0].sequence;
         // Long enough for what follows: limits are counted in pauses, and the bus takes its time, too.
-        self.world.told("unplug 0 c8 0");
+        self.world.told("unplug 0 64 0");
         self.world.pause_us(10_000);
         let _ = self.card.measure(500);
         let moment = self.card.read_moment().unwrap();
@@ -277,7 +279,7 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
             assert_eq!(self.card.wait_ready(0, 5), Err(Error::Unplugged));
             self.card.wait_ready(0, 2_000).unwrap();
         } else {
-            self.world.pause_us(250_000);
+            self.world.pause_us(130_000);
             let _ = self.card.measure(5_000);
             self.world.pause_us(32_000);
         }
@@ -350,22 +352,31 @@ fn everything_works_over_axi_lite() {
 }
 
 #[test]
+#[ignore = "slow: the Rust driver's whole journey over SPI"]
 fn everything_works_over_spi() {
     let world = World::new(Rig::new(HostBus::Spi, &everything()));
     Bench::new(world.clone(), Spi::new(world)).journey();
 }
 
+fn short(bus: HostBus) {
+    let world = World::new(Rig::new(bus, ALL_PARTS));
+    match bus {
+        HostBus::Parallel => Bench::new(world.clone(), Parallel::new(world)).short(),
+        HostBus::Uart => Bench::new(world.clone(), Uart::new(world)).short(),
+        _ => Bench::new(world.clone(), world).short(),
+    }
+}
+
 #[test]
+fn position_parameter_and_plug_work_over_a_uart() {
+    short(HostBus::Uart);
+}
+
+#[test]
+#[ignore = "slow: the Rust driver over every other bus"]
 fn position_parameter_and_plug_over_every_other_bus() {
-    use HostBus::{Apb, Parallel as Pins, Uart as Serial, Wishbone};
-    let driver = include_str!("../../drivers/rust/card.rs");
-    for &bus in third(&[Apb, Wishbone, Pins, Serial], driver.len()) {
-        let world = World::new(Rig::new(bus, ALL_PARTS));
-        match bus {
-            Pins => Bench::new(world.clone(), Parallel::new(world)).short(),
-            Serial => Bench::new(world.clone(), Uart::new(world)).short(),
-            _ => Bench::new(world.clone(), world).short(),
-        }
+    for bus in OTHER_BUSES {
+        short(bus);
     }
 }
 
@@ -411,27 +422,44 @@ fn an_encoder_that_never_answers_is_told_with_its_step() {
 #[test]
 fn slow_reads_are_of_one_moment() {
     words(HostBus::Apb, ALL_PARTS).torn();
+}
+
+#[test]
+#[ignore = "slow: the Rust driver's slow reads over the parallel bus"]
+fn slow_reads_over_the_parallel_bus_are_of_one_moment() {
     let world = World::new(Rig::new(HostBus::Parallel, ALL_PARTS));
     Bench::new(world.clone(), Parallel::new(world)).torn();
 }
 
-/// Good positions only, while one of some frames is disturbed.
-#[test]
-fn noise_on_spi_spoils_nothing() {
+/// Good positions only, while one of some frames is disturbed; then parameters and settings, if asked for.
+fn noise_spoils_nothing(positions: usize, has_more: bool, least: u64) {
     let world = World::new(Rig::new(HostBus::Spi, ALL_PARTS).noise(20));
     let mut spi = Spi::new(world.clone());
     spi.tries = 8;
     let mut bench = Bench::new(world, spi);
     bench.wait_for_both();
-    for _ in 0..30 {
+    for _ in 0..positions {
         bench.measure_well();
     }
-    bench.parameters();
-    bench.settings();
+    if has_more {
+        bench.parameters();
+        bench.settings();
+    }
     let flipped = bench.world.0.borrow().flipped;
-    assert!(flipped > 50, "{flipped}");
+    assert!(flipped > least, "{flipped}");
     let (spi, _) = bench.card.release();
     assert!(spi.disturbed > 0);
+}
+
+#[test]
+fn noise_on_spi_spoils_no_position() {
+    noise_spoils_nothing(20, false, 12);
+}
+
+#[test]
+#[ignore = "slow: positions, parameters and settings of the Rust driver over a noisy SPI"]
+fn noise_on_spi_spoils_nothing() {
+    noise_spoils_nothing(30, true, 50);
 }
 
 #[test]
@@ -441,7 +469,7 @@ fn the_function_of_the_page_shows_angles_over_a_plug() {
     let block = block.split("```").next().unwrap();
     assert_eq!(block, include_str!("page.rs"));
     let world = World::new(Rig::new(HostBus::Spi, ALL_PARTS));
-    world.told("unplug 0 18 c8");
+    world.told("unplug 0 18 64");
     let (mut good, mut bad) = (0, 0);
     let show = |shown: Result<i64, &str>| {
         if let Ok(angle) = shown {

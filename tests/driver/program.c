@@ -189,7 +189,7 @@ static void open_card(const char *kind, uint32_t hash)
     CHECK(error == ENDAT_ERROR_CONFIGURATION && card.channels == 0, "%s", endat_error_text(error));
     error = endat_open(&card, &link, hash);
     CHECK(error == ENDAT_OK, "%s", endat_error_text(error));
-    CHECK(card.channels == 2 && (card.system_hz == 16000000 || endat_protocol(&card, 0) != ENDAT_PROTOCOL_ENDAT || endat_protocol(&card, 1) != ENDAT_PROTOCOL_ENDAT), "%u channels", (unsigned)card.channels);
+    CHECK(card.channels == 2 && (card.system_hz == 8000000 || endat_protocol(&card, 0) != ENDAT_PROTOCOL_ENDAT || endat_protocol(&card, 1) != ENDAT_PROTOCOL_ENDAT), "%u channels", (unsigned)card.channels);
     error = endat_try_link(&card);
     CHECK(error == ENDAT_OK, "%s", endat_error_text(error));
 }
@@ -242,7 +242,8 @@ static void additional_data(void)
     CHECK(error == ENDAT_OK, "%s", endat_error_text(error));
     /* The card finds out what comes: one or two frames end with the pause of an aborted one. */
     for (int n = 0; n < 4; n++) {
-        (void)endat_measure(&card, &moment, 5 * MS);
+        if (endat_measure(&card, &moment, 5 * MS) == ENDAT_OK && moment.channel[0].info[0].came)
+            break;
         pause_us(32 * MS);
     }
     CHECK(endat_measure(&card, &moment, 5 * MS) == ENDAT_OK && moment.channel[0].fresh, "cause %u", moment.channel[0].cause);
@@ -263,7 +264,7 @@ static void settings(void)
     endat_error error = endat_read_settings(&card, 0, &before);
     uint32_t sources = 0;
 
-    CHECK(error == ENDAT_OK && before.position_bits == 29 && before.period_cycles == endat_period(&card, 2000000), "%u",
+    CHECK(error == ENDAT_OK && before.position_bits == 29 && before.period_cycles == endat_period(&card, 1000000), "%u",
           (unsigned)before.period_cycles);
     now = before;
     now.period_cycles = 3;
@@ -275,7 +276,7 @@ static void settings(void)
     now.start_window_cycles = 64;
     CHECK(endat_write_settings(&card, 0, &now) == ENDAT_ERROR_ARGUMENT, "window %u", 64u);
     now = before;
-    now.period_cycles = endat_period(&card, 1000000);
+    now.period_cycles = endat_period(&card, 500000);
     now.start_window_cycles = before.start_window_cycles + 1;
     error = endat_write_settings(&card, 0, &now);
     CHECK(error == ENDAT_OK, "%s", endat_error_text(error));
@@ -510,16 +511,18 @@ static void torn(void)
     }
 }
 
-/* Good positions only, while one of some frames is disturbed. */
-static void noisy(void)
+/* Good positions only, while one of some frames is disturbed; then parameters and settings, if asked for. */
+static void noisy(int positions, int has_more)
 {
     wait_for_both();
-    for (int n = 0; n < 30; n++) {
+    for (int n = 0; n < positions; n++) {
         measure_well();
         pause_us(200);
     }
-    parameters();
-    settings();
+    if (has_more) {
+        parameters();
+        settings();
+    }
     CHECK(disturbed() > 0, "%u frames went out again", (unsigned)disturbed());
 }
 
@@ -567,7 +570,7 @@ static void page(void)
     endat_error error;
 
     make_link("words", &link);
-    ask("unplug 0 18 c8");
+    ask("unplug 0 18 64");
     error = first_angles(&link);
     CHECK(error == ENDAT_OK && shown > 10, "%s, %u positions", endat_error_text(error), shown);
 }
@@ -596,7 +599,9 @@ int main(int count, char **arguments)
     else if (strcmp(scenario, "torn") == 0)
         torn();
     else if (strcmp(scenario, "noisy") == 0)
-        noisy();
+        noisy(30, 1);
+    else if (strcmp(scenario, "noisy positions") == 0)
+        noisy(20, 0);
     else if (strcmp(scenario, "broken") == 0)
         broken();
     else if (strcmp(scenario, "emitted") == 0)

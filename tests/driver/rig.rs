@@ -3,6 +3,7 @@
 
 use super::compiled;
 use crate::bus::{parallel, spi, Master};
+use crate::made;
 use endat_gen::config::{parse, Project};
 use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
 use endat_hdl::card::bus::HostBus;
@@ -13,14 +14,16 @@ use endat_sim::encoder::{Defect, EncoderConfig, Violation};
 use endat_sim::line::LineConfig;
 use endat_sim::rng::Rng;
 use endat_sim::{MS, US};
-use rtl_design::elaborate::Design;
 use rtl_design::engine::Compiled;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// System clock of these cards: low, so that milliseconds are few cycles.
-const SYSTEM_HZ: u64 = 16_000_000;
+pub const SYSTEM_HZ: u64 = 8_000_000;
+
+/// EnDat clock.
+pub const ENDAT_HZ: u32 = 1_000_000;
 
 /// More than a scenario takes: a driver that asks for ever ends, too.
 const LINES: usize = 1_000_000;
@@ -37,14 +40,14 @@ pub fn text(bus: HostBus, more: &str) -> String {
     let channel =
         WIDTHS.map(|bits| format!("[[channel]]\nposition_bits = {bits}\ncommand = \"111000\"\n"));
     format!(
-        "name = \"{name}_card\"\n[clock]\nsystem_hz = {SYSTEM_HZ}\n[endat]\nclock_hz = 2_000_000\n{}\
+        "name = \"{name}_card\"\n[clock]\nsystem_hz = {SYSTEM_HZ}\n[endat]\nclock_hz = {ENDAT_HZ}\n{}\
          [trigger]\nsample_hz = 5_000\nsources = [\"register\"]\n[host]\nbus = \"{name}\"\n{more}",
         channel.concat()
     )
 }
 
 /// The card of a project with short waits of its services, as its encoders have them.
-fn quick_design(project: &Project) -> Design {
+fn quick_card(project: &Project) -> Compiled {
     let times = ServiceTimes {
         power_up_ms: 2,
         after_pulse_ms: 2,
@@ -52,7 +55,7 @@ fn quick_design(project: &Project) -> Design {
         write_ms: 2,
         ..service_times(&project.card)
     };
-    endat_gen::design_with(project, &times, 100).unwrap()
+    made::card_with(project, &times, 100)
 }
 
 /// An encoder for whose waits these tests have the time.
@@ -130,16 +133,16 @@ impl Rig {
     pub fn with(mut project: Project, encoder: impl Fn(usize) -> EncoderConfig) -> Self {
         project.card.uart_bit_cycles = 8;
         let (system_hz, channels) = (project.card.system_hz, project.card.channels.len());
-        let design = quick_design(&project);
+        let engine = quick_card(&project);
         let encoders = || (0..channels).map(|n| (n, encoder(n)));
-        let master = || Master::of_design(&design, &project, encoders().collect(), 20.0);
+        let master = || Master::of_engine(engine.clone(), &project, encoders().collect(), 20.0);
         let (front, kind) = match project.bus {
             HostBus::Spi => (Front::Spi(spi::Host::at(master())), "spi"),
             HostBus::Parallel => (Front::Parallel(parallel::Host::at(master())), "parallel"),
             HostBus::Uart => {
                 let link = |(_, encoder)| Link::new(LineConfig::cable(20.0), encoder);
                 let links = encoders().map(link).collect();
-                let host = crate::host::Host::of_design(&design, system_hz, links);
+                let host = crate::host::Host::new(engine.clone(), system_hz, links);
                 (Front::Uart(host), "uart")
             }
             _ => (Front::Words(master()), "words"),

@@ -1,8 +1,9 @@
 //! The service behind the host link of a card.
 
 use crate::service_rig::{quick, times};
+use crate::{host, made};
 use endat_hdl::{
-    card::Card,
+    card::{service_times, uart_bridge::TIMEOUT_US},
     config::CardConfig,
     regs::{CARD, CARD_CONFIG, RESULT, SERVICE},
 };
@@ -13,12 +14,15 @@ use endat_sim::{
     MS, US,
 };
 
+/// System clock: services wait for milliseconds, which are few cycles.
+const MHZ: u64 = 25;
+
 /// The service's words behind it.
-struct Host(crate::host::Host);
+struct Host(host::Host);
 
 impl Host {
     fn new() -> Self {
-        let config = crate::host::card("s6_two_channel_service");
+        let config = host::card("s6_two_channel_service", MHZ);
         Self::with(&config, &[RCN_8510, ROQ_437])
     }
 
@@ -27,10 +31,10 @@ impl Host {
             system_khz: (config.system_hz / 1_000) as u32,
             ..times(true)
         };
-        let card = Card::with_times(config, 100, &times);
+        let card = made::uart_card(config, &times, 100);
         let link = |encoder: &Device| Link::new(LineConfig::cable(10.0), quick(encoder.encoder()));
         let links = encoders.iter().map(link).collect();
-        Self(crate::host::Host::new(card, config.system_hz, links))
+        Self(host::Host::new(card, config.system_hz, links))
     }
 
     fn read(&mut self, name: &str, channel: usize) -> u32 {
@@ -47,7 +51,7 @@ impl Host {
             if done(value) {
                 return value;
             }
-            self.0.bench.run_cycles(10_000);
+            self.0.bench.run_for(100 * US);
         }
         panic!("{name} of channel {channel} never comes");
     }
@@ -56,16 +60,16 @@ impl Host {
 /// An encoder that leaves a frame after 2 us of HIGH never answers at 200 kHz.
 #[test]
 fn an_encoder_that_leaves_a_slow_frame_starts_with_a_faster_calibration_clock() {
-    let preset = endat_gen::config::preset("s6_two_channel").unwrap();
     for (hz, starts) in [(200_000, false), (400_000, true)] {
-        let key = format!("clock_hz = 3_125_000\ncalibration_hz = {hz}");
-        let text = preset.replacen("clock_hz = 3_125_000", &key, 1);
-        let mut config = endat_gen::config::parse("card.toml", &text).unwrap().card;
-        config.uart_bit_cycles = 8;
+        let config = host::card_with("s6_two_channel", MHZ, |text| {
+            let key = format!("clock_hz = 3_125_000\ncalibration_hz = {hz}");
+            text.replacen("clock_hz = 3_125_000", &key, 1)
+        });
         let mut encoder = RCN_8510.encoder();
         encoder.max_clock_high = 2 * US;
         let links = [0, 1].map(|_| Link::new(LineConfig::cable(10.0), encoder.clone()));
-        let mut host = crate::host::Host::new(Card::new(&config), config.system_hz, links.into());
+        let card = made::uart_card(&config, &service_times(&config), TIMEOUT_US);
+        let mut host = host::Host::new(card, config.system_hz, links.into());
         host.write(&CARD_CONFIG, "trigger_sources", 0, 4);
         for _ in 0..3 {
             host.write(&CARD, "trigger_now", 0, 1);
@@ -113,7 +117,7 @@ fn both_channels_are_initialised_and_take_requests_over_the_host_link() {
 /// The first service has two channels, the second one only one.
 #[test]
 fn a_third_channel_has_a_service_of_its_own() {
-    let mut config = crate::host::card("s6_two_channel_service");
+    let mut config = host::card("s6_two_channel_service", MHZ);
     config.channels.push(config.channels[1].clone());
     let mut host = Host::with(&config, &[RCN_8510, ROQ_437, RCN_8510]);
     for (channel, width) in [(2, 29), (1, 37), (0, 29)] {
@@ -163,7 +167,7 @@ fn no_frame_is_missed_while_both_channels_are_busy() {
                 s & 1 == 0 && s >> 16 == request
             });
         }
-        host.0.bench.run_cycles(300_000);
+        host.0.bench.run_for(3 * MS);
     }
     for channel in [0, 1] {
         assert_eq!(host.read("lost", channel) >> 16, 0, "channel {channel}");

@@ -11,9 +11,26 @@ use std::time::Duration;
 /// Position 2, low word, which is here the low word of the position; and the encoder's clock: other ones in each frame.
 const INFOS: &str = "\ninfos = [0x42, 0x5B]";
 
-/// The card with service, these keys replaced.
+/// System clock cycles per microsecond.
+pub const US_CYCLES: u32 = 25;
+
+/// The preset with service at a quarter of its clock, which takes a quarter of the time; no board has this clock.
+pub fn text() -> String {
+    let text = preset("s6_two_channel_service").unwrap();
+    let mut text = text.split("\n[board]").next().unwrap().to_owned();
+    for (from, to) in [
+        ("system_hz = 100_000_000", "system_hz = 25_000_000"),
+        ("baud = 3_000_000", "baud = 3_125_000"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    text
+}
+
+/// The card of [`text`] with additional data, these keys replaced.
 pub fn project(changes: &[(&str, &str)]) -> Project {
-    let mut text = preset("s6_two_channel_service").unwrap().to_owned();
+    let mut text = text();
     let parts = "parts = [\"requests\", \"diagnosis\", \"continuous\", \"initialise\"]";
     assert!(text.contains(parts));
     text = text.replacen(parts, &format!("{parts}{INFOS} #"), 1);
@@ -61,23 +78,23 @@ fn good(info: Info) -> u16 {
     info.content
 }
 
-/// Catches a snapshot that takes the position of one frame and the additional data of another one.
-#[test]
-fn position_and_additional_data_of_a_result_are_of_one_frame() {
-    // At rest between frames, and one frame after the other with triggers that are lost.
-    for period in [10_000, 2_900] {
+/// Catches a snapshot that takes the position of one frame and the additional data of another one. Triggers come after each of these
+/// periods in microseconds; so many results are read.
+fn results_are_of_one_frame(periods_us: &[u32], results: usize) {
+    for &period_us in periods_us {
         let mut desk = desk(&project(&[("start = \"off\"", "start = \"off\"")]));
         desk.set("card_config.trigger_sources.timer", 0);
-        desk.set("card_config.trigger_period", period);
+        desk.set("card_config.trigger_period", period_us * US_CYCLES);
         desk.set("card_config.trigger_sources.timer", 1);
         desk.run_ms(1);
+        let wait_cycles = 200 * u64::from(US_CYCLES);
         let mut state = 0x1234_5678_9abc_def1u64;
         let mut seen = std::collections::BTreeSet::new();
-        for n in 0..200 {
+        for n in 0..results {
             state ^= state << 13;
             state ^= state >> 7;
             state ^= state << 17;
-            desk.card.bridge().transport().run(state % 20_000);
+            desk.card.bridge().transport().run(state % wait_cycles);
             let hold = n % 4 == 0;
             if hold {
                 desk.set("card_config.hold.hold", 1);
@@ -85,7 +102,7 @@ fn position_and_additional_data_of_a_result_are_of_one_frame() {
             let results = desk.card.results().unwrap().channels;
             let stamps: Vec<u32> = results.iter().map(|r| r.timestamp).collect();
             // Where triggers are lost each channel takes its own.
-            if period == 10_000 {
+            if period_us == IDLE_US {
                 assert_eq!(stamps[0], stamps[1], "both of one trigger");
             }
             for (channel, result) in results.iter().enumerate() {
@@ -97,7 +114,7 @@ fn position_and_additional_data_of_a_result_are_of_one_frame() {
                 seen.insert(result.position);
             }
             if hold {
-                desk.card.bridge().transport().run(state % 20_000);
+                desk.card.bridge().transport().run(state % wait_cycles);
                 let again = desk.card.results().unwrap().channels;
                 for (before, now) in results.iter().zip(&again) {
                     assert_eq!((now.position, now.infos), (before.position, before.infos));
@@ -105,8 +122,24 @@ fn position_and_additional_data_of_a_result_are_of_one_frame() {
                 desk.set("card_config.hold.hold", 0);
             }
         }
-        assert!(seen.len() > 300, "{}", seen.len());
+        assert!(2 * seen.len() > 3 * results, "{}", seen.len());
     }
+}
+
+/// The line is idle between frames.
+const IDLE_US: u32 = 100;
+/// One frame follows the other, and triggers are lost.
+const BUSY_US: u32 = 29;
+
+#[test]
+fn position_and_additional_data_of_a_result_are_of_one_frame() {
+    results_are_of_one_frame(&[BUSY_US], 40);
+}
+
+#[test]
+#[ignore = "slow: hundreds of results with additional data"]
+fn position_and_additional_data_of_hundreds_of_results_are_of_one_frame() {
+    results_are_of_one_frame(&[IDLE_US, BUSY_US], 200);
 }
 
 /// Catches a result that shows what an earlier frame brought, or the frame of a request after it.
@@ -178,7 +211,8 @@ fn a_result_has_no_additional_data_of_another_frame() {
 pub fn pushed(desk: &mut Desk, ms: u64) -> Vec<SampleSet> {
     let mut sets = Vec::new();
     for _ in 0..2 * ms {
-        desk.card.bridge().transport().run(50_000);
+        let half_ms = 500 * u64::from(US_CYCLES);
+        desk.card.bridge().transport().run(half_ms);
         let new = desk.card.bridge().pushed(Duration::from_micros(1)).unwrap();
         sets.extend(new);
     }
