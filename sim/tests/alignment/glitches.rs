@@ -1,12 +1,11 @@
 //! Pulses on DATA that are shorter than the filter: nowhere in a frame do they change anything.
 
-use super::{count, run, Count, Kind};
+use super::{count, engine, run, Count, Kind};
 use endat_sim::{
     campaign::{Case, Traces},
     line::{Glitch, Jitter, Wire},
     Time,
 };
-use rtl_design::engine::Compiled;
 
 const FILTER_CYCLES: u64 = 3;
 
@@ -15,8 +14,7 @@ fn quiet(kind: Kind) -> (Case, Time, Time) {
     let mut case = kind.case(0.0, 2.3, 2, 3);
     case.line.data_in.jitter = Jitter::None;
     case.settings.filter_cycles = FILTER_CYCLES;
-    let engine = Compiled::new(&case.design().unwrap()).unwrap();
-    let bench = case.run_alone(engine, false);
+    let bench = case.run_alone(engine(&case), false);
     let all = count(&case, &Traces::of(&bench), 0);
     assert_eq!(all.good, all.frames);
     let last = bench.frames(0).last().unwrap();
@@ -47,8 +45,8 @@ fn with_glitches(kind: Kind, width: f64, step: usize) -> Vec<Case> {
 /// Both inputs.
 const KINDS: [Kind; 2] = [Kind::single(16), Kind::double(16)];
 
-/// A part of the places for the quick tests: every third of a cycle at other places of a bit.
-const SOME: usize = 47;
+/// Both inputs, and a part of the places, for the quick tests: every third of a cycle at other places of a bit.
+const SOME: ([Kind; 2], usize) = ([KINDS[0].slower(), KINDS[1].slower()], 47);
 
 /// Runs glitches of these widths side by side. Gives a result for each width.
 fn of_widths(kind: Kind, widths: &[f64], step: usize) -> Vec<Vec<Count>> {
@@ -64,9 +62,9 @@ fn is_harmed(count: &Count) -> bool {
     (count.good, count.wrong) != (count.frames, 0)
 }
 
-fn below_the_filter(step: usize) {
+fn below_the_filter((kinds, step): ([Kind; 2], usize)) {
     const WIDTHS: [f64; 4] = [0.4, 1.0, 1.9, 2.9];
-    for kind in KINDS {
+    for kind in kinds {
         let counts = of_widths(kind, &WIDTHS, step);
         for (width, counts) in WIDTHS.iter().zip(counts) {
             assert!(counts.len() > 1_000 / (1 + kind.double_edge as usize) / step);
@@ -84,12 +82,12 @@ fn pulses_below_the_filter_have_no_effect() {
 #[test]
 #[ignore = "slow: pulses at every third of a cycle of a frame"]
 fn pulses_below_the_filter_have_no_effect_at_any_phase() {
-    below_the_filter(1);
+    below_the_filter((KINDS, 1));
 }
 
 /// Catches a filter that counts whole cycles only: 3.4 cycles are 6 or 7 looks.
-fn half_a_cycle_counts(step: usize) {
-    let cases = with_glitches(Kind::double(16), 3.4, step);
+fn half_a_cycle_counts(kind: Kind, step: usize) {
+    let cases = with_glitches(kind, 3.4, step);
     let mut both = cases.clone();
     both.extend(cases.iter().cloned().map(|mut case| {
         case.settings.filter_half = true;
@@ -105,19 +103,19 @@ fn half_a_cycle_counts(step: usize) {
 
 #[test]
 fn half_a_cycle_of_the_filter_counts() {
-    half_a_cycle_counts(11);
+    half_a_cycle_counts(SOME.0[1], 11);
 }
 
 #[test]
 #[ignore = "slow: pulses at every third of a cycle of a frame"]
 fn half_a_cycle_of_the_filter_counts_at_any_phase() {
-    half_a_cycle_counts(1);
+    half_a_cycle_counts(KINDS[1], 1);
 }
 
 /// Longer ones do harm, so the sweep above means something; they are told, but for what CRC5 cannot see.
-fn above_the_filter(step: usize) {
+fn above_the_filter((kinds, step): ([Kind; 2], usize)) {
     const WIDTHS: [f64; 3] = [5.0, 12.0, 24.0];
-    for kind in KINDS {
+    for kind in kinds {
         let counts = of_widths(kind, &WIDTHS, step);
         for (width, counts) in WIDTHS.iter().zip(counts) {
             let bad: usize = counts.iter().map(|c| c.frames - c.good).sum();
@@ -136,5 +134,5 @@ fn pulses_longer_than_the_filter_are_reported() {
 #[test]
 #[ignore = "slow: pulses at every third of a cycle of a frame"]
 fn pulses_longer_than_the_filter_are_reported_at_any_phase() {
-    above_the_filter(1);
+    above_the_filter((KINDS, 1));
 }

@@ -14,7 +14,9 @@ use endat_sim::{
     line::Jitter,
     Time,
 };
-use rtl_design::engine::LaneWords;
+use rtl_design::engine::{Compiled, LaneWords};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 /// What is run: system clock cycles in a bit, and on which edges DATA is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +25,8 @@ pub struct Kind {
     pub cycles: u64,
     /// Both edges of the system clock.
     pub double_edge: bool,
+    /// The EnDat clock is slower than the fastest by this factor: frames that measure the delay take fewer cycles.
+    pub slower: u64,
 }
 
 impl Kind {
@@ -30,6 +34,7 @@ impl Kind {
         Self {
             cycles,
             double_edge: false,
+            slower: 1,
         }
     }
 
@@ -37,7 +42,13 @@ impl Kind {
         Self {
             cycles,
             double_edge: true,
+            slower: 1,
         }
+    }
+
+    /// A quarter of the EnDat clock, for the quick tests. Not for delays of more than a few bits.
+    pub const fn slower(self) -> Self {
+        Self { slower: 4, ..self }
     }
 
     /// Looks at DATA in each bit.
@@ -52,11 +63,12 @@ impl Kind {
 
     /// EnDat clock in hertz, whose period is a whole number of picoseconds.
     fn clock_hz(self) -> u64 {
-        match self.cycles {
+        let fastest = match self.cycles {
             0..=8 => 16_000_000,
             9..=16 => 8_000_000,
             _ => 4_000_000,
-        }
+        };
+        fastest / self.slower
     }
 
     /// A bit in picoseconds.
@@ -91,6 +103,17 @@ pub struct Count {
     pub good: usize,
     /// Told as good, with another position.
     pub wrong: usize,
+}
+
+/// The compiled design of a case; made once for all cases that share it.
+pub fn engine(case: &Case) -> Compiled {
+    static MADE: Mutex<BTreeMap<u64, Compiled>> = Mutex::new(BTreeMap::new());
+    let design = case.design().expect("a design");
+    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    let make = || Compiled::new(&design).expect("no loop");
+    (made.entry(campaign::digest(&design)))
+        .or_insert_with(make)
+        .clone()
 }
 
 /// Counts the frames of a case from frame `first` on.

@@ -12,12 +12,12 @@ fn sum(counts: &[Count]) -> Count {
     })
 }
 
-/// Runs every oversampling with every jitter and these delays, in eighths of a bit: cells of 12 frames.
-fn area(eighths: &[u32]) {
+/// Runs every oversampling with every jitter and these delays, in eighths of a bit: cells of 12 frames. At least `part_min` of the cells
+/// are good, and one bad frame in 16 passes the CRC by chance, and `lucky` more.
+fn area(kinds: &[Kind], eighths: &[u32], part_min: f64, lucky: usize) {
     let jitters = [0.0, 0.1, 0.2, 0.3, 0.4];
-    let kinds = [4, 6, 8, 16, 32].map(Kind::single);
     let mut cases: Vec<Case> = vec![];
-    for kind in kinds {
+    for &kind in kinds {
         for jitter in jitters {
             for eighth in eighths {
                 let seed = cases.len() as u64;
@@ -38,11 +38,15 @@ fn area(eighths: &[u32]) {
             cells.len()
         );
     }
-    assert!(part >= 0.82, "{passed} of {} cells, {part:.3}", cases.len());
+    assert!(
+        part >= part_min,
+        "{passed} of {} cells, {part:.3}",
+        cases.len()
+    );
     // What passes the CRC by chance is one bad frame in 32 at most, and there are few bad ones in a cell.
     let all = sum(&counts);
     let bad = all.frames - all.good;
-    assert!(all.wrong * 16 <= bad, "{all:?}");
+    assert!((all.wrong - all.wrong.min(lucky)) * 16 <= bad, "{all:?}");
     println!("{passed} of {} cells, {all:?}", cases.len());
 }
 
@@ -50,18 +54,19 @@ fn area(eighths: &[u32]) {
 fn the_area_of_tolerance_is_that_of_an_ideal_receiver() {
     // Every eighth of a bit once, from nothing to 20 bits.
     let eighths: Vec<u32> = (0..=160).step_by(13).take(12).collect();
-    area(&eighths);
+    area(&[8, 32].map(Kind::single), &eighths, 0.95, 2);
 }
 
 #[test]
 #[ignore = "slow: 4025 cells of oversampling, jitter and delay"]
 fn the_area_of_tolerance_is_that_of_an_ideal_receiver_in_every_cell() {
     let eighths: Vec<u32> = (0..=160).collect();
-    area(&eighths);
+    area(&[4, 6, 8, 16, 32].map(Kind::single), &eighths, 0.82, 0);
 }
 
-/// The largest jitter at which all of so many frames are good, whatever the delay's part of a cycle is, as a part of the ideal one.
-fn reached(kind: Kind, phase_mode: u64, percent: &[u32], frames: usize) -> f64 {
+/// The largest jitter at which all of so many frames are good after a warm-up, whatever the delay's part of a cycle is, as a part of the
+/// ideal one.
+fn reached(kind: Kind, phase_mode: u64, percent: &[u32], (warm_up, frames): (usize, usize)) -> f64 {
     let parts: Vec<f64> = percent.iter().map(|p| f64::from(*p) / 100.0).collect();
     let delays = 6;
     let mut cases = vec![];
@@ -72,27 +77,27 @@ fn reached(kind: Kind, phase_mode: u64, percent: &[u32], frames: usize) -> f64 {
             let mut case = kind.case(
                 part * kind.ideal_jitter(),
                 delay_bits,
-                WARM_UP + frames,
+                warm_up + frames,
                 seed,
             );
             case.settings.phase_mode = phase_mode;
             cases.push(case);
         }
     }
-    let counts = run(&cases, WARM_UP);
+    let counts = run(&cases, warm_up);
     let cells = counts.chunks(delays as usize);
     let good = cells.take_while(|cell| cell.iter().all(|c| c.good == c.frames));
     good.count().checked_sub(1).map_or(0.0, |last| parts[last])
 }
 
-/// Frames in which the tracker finds the phase.
-const WARM_UP: usize = 120;
+/// Frames in which the tracker finds the phase, and those that are counted.
+const FRAMES: (usize, usize) = (120, 100);
 
-fn tracked_phase_reaches_the_ideal(kinds: &[Kind]) {
+fn tracked_phase_reaches_the_ideal(kinds: &[Kind], frames: (usize, usize)) {
     let percent = [80, 90, 95, 98, 100, 102, 104, 106, 108, 110];
     let mut low = vec![];
     for &kind in kinds {
-        let tracked = reached(kind, mode::TRACKED, &percent, 100);
+        let tracked = reached(kind, mode::TRACKED, &percent, frames);
         let ideal = kind.ideal_jitter();
         println!(
             "{} cycles, {} places: theory {ideal:.4}, measured {:.4} ({tracked:.2})",
@@ -109,7 +114,8 @@ fn tracked_phase_reaches_the_ideal(kinds: &[Kind]) {
 
 #[test]
 fn tracked_phase_stands_the_jitter_that_an_ideal_receiver_stands() {
-    tracked_phase_reaches_the_ideal(&[Kind::single(8), Kind::double(2)]);
+    let kinds = [Kind::single(8).slower(), Kind::double(2).slower()];
+    tracked_phase_reaches_the_ideal(&kinds, (100, 40));
 }
 
 #[test]
@@ -117,13 +123,13 @@ fn tracked_phase_stands_the_jitter_that_an_ideal_receiver_stands() {
 fn tracked_phase_tolerates_the_ideal_jitter_at_every_oversampling() {
     let kinds = [4, 6, 8, 16, 32].map(Kind::single).into_iter();
     let kinds: Vec<Kind> = kinds.chain([2, 4, 8].map(Kind::double)).collect();
-    tracked_phase_reaches_the_ideal(&kinds);
+    tracked_phase_reaches_the_ideal(&kinds, FRAMES);
 }
 
 /// With the phase of one jittered edge half of it is left; the model of jitter and the judge can tell the difference.
 #[test]
 fn phase_from_the_start_bit_stands_half_of_that() {
-    let part = reached(Kind::single(8), mode::FRAME, &[45, 75], 20);
+    let part = reached(Kind::single(8).slower(), mode::FRAME, &[45, 75], (10, 20));
     assert_eq!(part, 0.45);
 }
 
@@ -131,7 +137,7 @@ fn phase_from_the_start_bit_stands_half_of_that() {
 #[ignore = "slow: 8 and 16 places in a bit, to a twentieth"]
 fn phase_from_the_start_bit_tolerates_half_of_that_at_8_and_16_places() {
     for kind in [Kind::single(8), Kind::single(16)] {
-        let part = reached(kind, mode::FRAME, &[40, 45, 50, 60, 70, 80], 100);
+        let part = reached(kind, mode::FRAME, &[40, 45, 50, 60, 70, 80], FRAMES);
         assert!((0.45..=0.7).contains(&part), "{kind:?}: {part}");
     }
 }
@@ -149,7 +155,8 @@ fn four_places_are_enough(kinds: &[Kind], frames: usize) {
 
 #[test]
 fn a_bit_of_four_places_is_enough() {
-    four_places_are_enough(&[Kind::single(4), Kind::double(2)], 60);
+    let kinds = [Kind::single(4).slower(), Kind::double(2).slower()];
+    four_places_are_enough(&kinds, 60);
 }
 
 #[test]
@@ -159,12 +166,12 @@ fn a_bit_of_four_places_is_enough_for_a_hundred_thousand_frames() {
 }
 
 /// Runs these widths with delays from nothing to 8 us: exactly the pulses that the encoder needs, while tcal moves the start bit about.
-fn pulses_are_exact(kinds: &[Kind], widths: &[u32]) {
+fn pulses_are_exact(kinds: &[Kind], widths: &[u32], delays: &[u32]) {
     use endat_sim::US;
     let mut cases = vec![];
     for &kind in kinds {
         for &bits in widths {
-            for delay in 0..12 {
+            for &delay in delays {
                 let seed = cases.len() as u64;
                 let bits_of_delay = f64::from(delay) * 7.9e6 / 11.0 / kind.bit();
                 let mut case = kind.case(0.1, bits_of_delay, 3, seed);
@@ -185,7 +192,11 @@ fn pulses_are_exact(kinds: &[Kind], widths: &[u32]) {
 
 #[test]
 fn pulses_are_exact_at_narrow_and_wide_positions() {
-    pulses_are_exact(&[Kind::single(4), Kind::double(2)], &[1, 2, 13, 29, 48]);
+    pulses_are_exact(
+        &[Kind::single(4), Kind::double(2)],
+        &[1, 2, 13, 29, 48],
+        &[0, 5, 11],
+    );
 }
 
 #[test]
@@ -195,5 +206,6 @@ fn pulses_are_exact_at_every_width_and_delay() {
     pulses_are_exact(
         &[Kind::single(4), Kind::single(8), Kind::double(2)],
         &widths,
+        &(0..12).collect::<Vec<u32>>(),
     );
 }

@@ -1,22 +1,19 @@
 //! Delays that change: slowly, and by a step.
 
-use super::{count, Kind};
+use super::{count, engine, Kind};
 use endat_hdl::endat::{line_delay::mode, transaction::cause};
 use endat_sim::{campaign::Traces, line::Jitter, MS, US};
-use rtl_design::engine::Compiled;
 
-/// A microsecond in so many frames.
-fn wanders(kind: Kind, jitter_bits: f64, frames: usize) {
+/// A delay that grows by `drift` ps in each microsecond, for so many frames.
+fn wanders(kind: Kind, jitter_bits: f64, frames: usize, drift: u64) {
     let mut case = kind.case(jitter_bits, 3.0, frames, 7);
-    // A frame and its recovery time take 10 us and more: in 10 000 frames 1 us in 100 ms at least.
-    let drift = 100_000 / frames as i64;
-    case.line.data_in.drift = drift;
-    let engine = Compiled::new(&case.design().unwrap()).unwrap();
-    let bench = case.run_alone(engine, false);
+    case.line.data_in.drift = drift as i64;
+    let bench = case.run_alone(engine(&case), false);
     let got = count(&case, &Traces::of(&bench), case.calibration_frames());
     assert_eq!((got.good, got.wrong), (got.frames, 0), "{kind:?}");
-    let moved = bench.now() / US * drift as u64;
-    assert!(moved >= US, "{moved} ps");
+    let moved = bench.now() / US * drift;
+    // A frame and its recovery time take 10 us and more.
+    assert!(moved >= 10 * drift * frames as u64, "{moved} ps");
     let results = bench.results();
     let places = results[results.len() - 1].delay_cycles - results[4].delay_cycles;
     let cycle = 1e12 / case.system_hz as f64;
@@ -26,22 +23,22 @@ fn wanders(kind: Kind, jitter_bits: f64, frames: usize) {
     );
 }
 
-/// Ten times as fast as in the slow test.
+/// Half a microsecond, five times as fast as in the slow test; with jitter as fast as there.
 #[test]
 fn slow_drift_costs_no_frame() {
-    wanders(Kind::single(4), 0.0, 1_000);
-    wanders(Kind::double(4), 0.2, 1_000);
+    wanders(Kind::single(4), 0.0, 1_000, 50);
+    wanders(Kind::double(4), 0.2, 1_000, 10);
 }
 
 #[test]
-#[ignore = "slow: ten thousand frames, three oversamplings"]
+#[ignore = "slow: a microsecond in ten thousand frames, three oversamplings"]
 fn slow_drift_costs_no_frame_of_ten_thousand() {
     for (kind, jitter_bits) in [
         (Kind::single(4), 0.0),
         (Kind::single(8), 0.2),
         (Kind::double(4), 0.2),
     ] {
-        wanders(kind, jitter_bits, 10_000);
+        wanders(kind, jitter_bits, 10_000, 10);
     }
 }
 
@@ -54,8 +51,7 @@ fn steps(kinds: &[Kind], steps_sixteenths: &[u64]) {
                 case.line.data_in.jitter = Jitter::Uniform((0.02 * kind.bit()) as u64);
                 let step = sign * sixteenths as f64 / 16.0 * kind.bit();
                 case.line.data_in.step = Some((2 * MS, step as i64));
-                let engine = Compiled::new(&case.design().unwrap()).unwrap();
-                let bench = case.run_alone(engine, false);
+                let bench = case.run_alone(engine(&case), false);
                 let first = bench.results().iter().position(|r| r.time > MS).unwrap();
                 let got = count(&case, &Traces::of(&bench), first);
                 let what = format!("{kind:?}, {sign} * {sixteenths}/16: {got:?}");
@@ -71,7 +67,10 @@ fn steps(kinds: &[Kind], steps_sixteenths: &[u64]) {
 
 #[test]
 fn a_step_costs_one_frame_at_most_and_never_a_wrong_position() {
-    steps(&[Kind::single(8), Kind::double(4)], &[1, 8, 15, 16]);
+    steps(
+        &[Kind::single(8).slower(), Kind::double(4).slower()],
+        &[1, 8, 15, 16],
+    );
 }
 
 #[test]
@@ -99,8 +98,7 @@ fn windows(bits_cycles: &[u64], steps_cycles: &[i64]) {
                 case.settings.start_window_cycles = WINDOW_CYCLES as u64;
                 let cycle_ps = 1e12 / case.system_hz as f64;
                 case.line.data_in.step = Some((2 * MS, (step_cycles as f64 * cycle_ps) as i64));
-                let engine = Compiled::new(&case.design().unwrap()).unwrap();
-                let bench = case.run_alone(engine, false);
+                let bench = case.run_alone(engine(&case), false);
                 let causes: Vec<u64> = bench.results().iter().map(|r| r.last_cause()).collect();
                 let refused = causes.iter().filter(|c| **c != cause::NONE).count();
                 let what = format!("{cycles} {phase_mode} {step_cycles}: {causes:?}");

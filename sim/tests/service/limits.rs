@@ -1,6 +1,6 @@
 //! What the host sets in a frame's limits and in the continuous clock.
 
-use super::rig::{quick, Make, Rig, SYSTEM_HZ};
+use super::rig::{hasty, quick, Make, Rig, SYSTEM_HZ};
 use endat_hdl::endat::{
     service::map::{word, COUNTER_POSITION_2},
     timing::{recovery_min_cycles, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS},
@@ -43,10 +43,10 @@ fn the_shortest_recovery_time_is_that_of_the_range_in_use() {
             (EncoderConfig::endat21(25), RECOVERY_MIN_NS),
         ] {
             let make = Make {
-                initialise: true,
-                ..make
+                wants_short,
+                ..Make::hasty()
             };
-            let mut rig = Rig::with(make, 2_000_000, quick(encoder), 25);
+            let mut rig = Rig::with(make, 2_000_000, hasty(encoder), 25);
             assert_eq!(rig.initialised(), 0);
             assert_eq!(recovery_min(&mut rig), of_range(ns), "{wants_short}");
             rig.good_position();

@@ -133,7 +133,7 @@ fn run(samples: u64) {
 
 #[test]
 fn requests_cost_no_sample() {
-    run(SAMPLE_HZ / 4);
+    run(SAMPLE_HZ / 8);
 }
 
 #[test]

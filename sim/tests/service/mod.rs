@@ -8,5 +8,6 @@ mod mailbox;
 mod plug;
 mod rig;
 mod three_ways;
+mod unplugged;
 mod upsets;
 mod waiting;

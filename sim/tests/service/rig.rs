@@ -17,7 +17,7 @@ use endat_sim::{
     campaign::ABORT_US,
     encoder::EncoderConfig,
     line::LineConfig,
-    Time, MS,
+    Time, MS, US,
 };
 use rtl_design::elaborate::elaborate;
 use rtl_design::engine::Compiled;
@@ -56,6 +56,8 @@ pub struct Make {
     pub initialise: bool,
     pub wants_short: bool,
     pub infos: [u8; LIST],
+    /// Waits as short as an encoder of [`hasty`] allows.
+    pub is_hasty: bool,
 }
 
 impl Make {
@@ -65,6 +67,15 @@ impl Make {
             initialise,
             wants_short: false,
             infos: [0; LIST],
+            is_hasty: false,
+        }
+    }
+
+    /// Initialises an encoder of [`hasty`] in a third of the time.
+    pub fn hasty() -> Self {
+        Self {
+            is_hasty: true,
+            ..Self::usual(true)
         }
     }
 
@@ -73,11 +84,15 @@ impl Make {
             abort_us: ABORT_US,
             ..FixedTimes::at(self.system_hz)
         };
-        let times = ServiceTimes {
+        let mut times = ServiceTimes {
             system_khz: (self.system_hz / 1_000) as u32,
             infos: self.infos,
             ..times(self.initialise)
         };
+        if self.is_hasty {
+            (times.power_up_ms, times.after_pulse_ms, times.reset_ms) = (1, 1, 1);
+            (times.write_ms, times.gap_ms) = (0, 0);
+        }
         let mut block = EncoderPort::new(fixed, Some(&times), self.wants_short);
         block.connect_all();
         let design = elaborate(&block, "encoder_port").expect("the port elaborates");
@@ -101,6 +116,15 @@ pub fn quick(mut encoder: EncoderConfig) -> EncoderConfig {
     encoder.write_time = 0..=MS;
     encoder.reset_time = 2 * MS;
     encoder.parameter_gap = encoder.parameter_gap.min(MS);
+    encoder
+}
+
+/// An encoder that makes nobody wait, not even between two parameters.
+pub fn hasty(mut encoder: EncoderConfig) -> EncoderConfig {
+    encoder.tac = 0..=20 * US;
+    encoder.write_time = 0..=20 * US;
+    encoder.reset_time = MS;
+    encoder.parameter_gap = 0;
     encoder
 }
 

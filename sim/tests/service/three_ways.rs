@@ -1,6 +1,6 @@
 //! A port with its service at work with an encoder: what the bench drove is played to every execution of the design.
 
-use super::rig::{quick, times, ENDAT_HZ};
+use super::rig::{quick, times};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::endat::{
     channel::FixedTimes,
@@ -22,6 +22,7 @@ use rust_hdl::prelude::Block;
 struct Life {
     name: &'static str,
     system_hz: u64,
+    endat_hz: u64,
     /// Clock of the frame that measures the delay.
     calibration_hz: u64,
     position_bits: u32,
@@ -29,6 +30,12 @@ struct Life {
     first: Time,
     /// From one trigger to the next.
     next: Time,
+    /// Triggers after the first.
+    triggers: u128,
+    /// Additional data that the service selects without being asked; otherwise the host lists them.
+    info: Option<u8>,
+    /// Recovery time of the encoder.
+    recovery: Time,
 }
 
 impl Life {
@@ -36,6 +43,7 @@ impl Life {
         let service = ServiceTimes {
             gap_ms: 0,
             system_khz: (self.system_hz / 1_000) as u32,
+            infos: [self.info.unwrap_or(0), 0, 0, 0, 0, 0, 0, 0],
             ..times(false)
         };
         let fixed = FixedTimes {
@@ -51,7 +59,8 @@ impl Life {
     /// Positions, a selection that rides, additional data, a request with a frame of its own; cycle by cycle.
     fn recorded(&self, design: &Design) -> Stimulus {
         let bits = self.position_bits;
-        let encoder = quick(EncoderConfig::endat22(bits));
+        let mut encoder = quick(EncoderConfig::endat22(bits));
+        encoder.tm = self.recovery..=self.recovery;
         let link = Link::new(LineConfig::cable(10.0), encoder);
         let engine = Compiled::new(design).unwrap();
         let mut bench = Bench::new(engine, self.system_hz, vec![(PinNames::channel(), link)]);
@@ -59,7 +68,7 @@ impl Life {
         let command = ModeCommand::SendPositionAddInfo;
         bench.configure(&ChannelSettings::new(
             self.system_hz,
-            ENDAT_HZ,
+            self.endat_hz,
             command,
             bits,
         ));
@@ -78,14 +87,16 @@ impl Life {
                 bench.run_cycles(8);
             }
         };
-        write(&mut bench, word::LIST, 0x4C);
-        write(&mut bench, word::LIST_LENGTH, 1);
-        for _ in 0..3 {
+        if self.info.is_none() {
+            write(&mut bench, word::LIST, 0x4C);
+            write(&mut bench, word::LIST_LENGTH, 1);
+        }
+        for _ in 0..self.triggers {
             bench.trigger();
             bench.run_for(self.next);
         }
         write(&mut bench, word::REQUEST, 0x0E << 24 | 0xA1 << 16);
-        bench.run_for(120 * US);
+        bench.run_for(self.next);
         bench.set("host_address", word::REQUEST_STATE.into());
         bench.set("host_read", 1);
         bench.run_cycles(1);
@@ -114,9 +125,10 @@ impl Life {
             out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, displaced, reply, calibrated, alarm;
             bundles line, settings, window, result, end, record);
         let stimulus = self.recorded(&design);
+        println!("{} cycles", stimulus.cycles.len());
         let seen = three_way(self.name, &mut kernel, &design, &stimulus).unwrap();
         let last = |name: &str| *seen.output(name).last().unwrap();
-        assert_eq!((last("sequence"), last("fresh")), (4, 1));
+        assert_eq!((last("sequence"), last("fresh")), (1 + self.triggers, 1));
         assert_eq!((last("info_active"), last("info_1")), (1, 0x0C_0B8A));
         assert_eq!((last("reply"), last("reply_good")), (0xA1_0000, 1));
     }
@@ -126,11 +138,15 @@ impl Life {
 fn kernels_engines_and_verilog_agree_on_requests() {
     let short = Life {
         name: "encoder_port",
-        system_hz: 16_000_000,
-        calibration_hz: 1_000_000,
+        system_hz: 10_000_000,
+        endat_hz: 1_250_000,
+        calibration_hz: 625_000,
         position_bits: 3,
-        first: 110 * US,
+        first: 120 * US,
         next: 80 * US,
+        triggers: 2,
+        info: Some(0x4C),
+        recovery: 3 * US,
     };
     short.agrees();
 }
@@ -141,10 +157,14 @@ fn kernels_engines_and_verilog_agree_on_requests_at_32_mhz() {
     let long = Life {
         name: "encoder_port_32_mhz",
         system_hz: 32_000_000,
+        endat_hz: 2_000_000,
         calibration_hz: 200_000,
         position_bits: 13,
         first: 250 * US,
         next: 110 * US,
+        triggers: 3,
+        info: None,
+        recovery: 11 * US,
     };
     long.agrees();
 }
