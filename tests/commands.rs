@@ -105,7 +105,7 @@ fn shell(folder: &Path, script: &str) -> (bool, String) {
 }
 
 /// Those of [`QUICK`] that take more than a second of a slow machine.
-const LONGER: [&str; 2] = ["doctor", "sim initialise"];
+const LONGER: [&str; 3] = ["doctor", "sim initialise", "sim no-answer"];
 
 /// Runs the commands of [`QUICK`] that are on a page, in its order, in a folder for each page. Those of [`LONGER`] are left out, or nothing
 /// but they is counted.

@@ -214,10 +214,13 @@ fn every_key_of_the_preset_is_on_the_page() {
 }
 
 /// Drawings of the programming guide, each with the scenario that it shows.
-const DRAWINGS: [(&str, &[&str]); 6] = [
+const DRAWINGS: [(&str, &[&str]); 3] = [
     ("frame.svg", &["paper"]),
     ("supplement.svg", &["additional-data", "--frame", "5"]),
     ("parameter.svg", &["parameter", "--frame", "4"]),
+];
+/// Those of scenarios that last seconds.
+const LONG_DRAWINGS: [(&str, &[&str]); 3] = [
     ("initialise.svg", &["initialise", "--frame", "all"]),
     ("no-answer.svg", &["no-answer", "--frame", "3"]),
     ("no-answer-pause.svg", &["no-answer", "--frame", "all"]),
@@ -230,15 +233,25 @@ fn docs(name: &str) -> std::path::PathBuf {
 
 #[test]
 fn the_drawings_in_the_programming_guide_are_the_program_s() {
+    drawings_are_the_program_s("pages-drawings", &DRAWINGS);
+}
+
+#[test]
+#[ignore = "slow: drawings of scenarios that last seconds"]
+fn the_long_drawings_in_the_programming_guide_are_the_program_s() {
+    drawings_are_the_program_s("pages-long-drawings", &LONG_DRAWINGS);
+}
+
+fn drawings_are_the_program_s(test: &str, drawings: &[(&str, &[&str])]) {
     let page = include_str!("../docs/programming.md");
-    let folder = tools::folder("pages-drawings");
-    for (name, scenario) in DRAWINGS {
+    let folder = tools::folder(test);
+    for (name, scenario) in drawings {
         let command = format!("cargo run -- sim {} --svg {name}", scenario.join(" "));
         assert!(page.contains(&format!("`{command}`")), "{command}");
         assert!(page.contains(&format!("]({name})](")), "{name}");
         let file = folder.join(name);
         let svg = ["--svg", file.to_str().unwrap()];
-        let outcome = crate::program::run(&[&["sim"], scenario, &svg[..]].concat());
+        let outcome = crate::program::run(&[&["sim"], *scenario, &svg[..]].concat());
         assert_eq!(outcome.exit_code, 0, "{outcome:?}");
         let drawn = std::fs::read_to_string(file).unwrap();
         tools::assert_committed(&docs(name), &drawn);

@@ -35,18 +35,16 @@ fn wheel_in(folder: &Path) -> PathBuf {
     wheel
 }
 
-/// Catches whatever breaks the package: a wheel without a file, a changed library, a promise in the types that is not kept.
-#[test]
-fn the_python_package_is_built_installed_tested_and_typed() {
-    let check = "the Python package is built, installed and tested";
-    let is_there =
+/// Builds the package as a wheel and installs it in a separate environment in a folder that it has made; `None` if something is missing.
+fn installed(test: &str, check: &str) -> Option<(PathBuf, PathBuf)> {
+    let has_all =
         tools::require("maturin", check) && MODULES.iter().all(|m| tools::require_python(m, check));
-    if !is_there {
-        return;
+    if !has_all {
+        return None;
     }
-    let dir = tools::folder("python");
+    let dir = tools::folder(test);
     let (wheels, environment) = (dir.join("wheels"), dir.join("environment"));
-    // In the folder of this build: what the wheel has in common with the program is there.
+    // In the folder of this build, which has compiled what the wheel shares with the program.
     let target = Path::new(env!("CARGO_BIN_EXE_endat-gen"))
         .ancestors()
         .nth(2);
@@ -72,34 +70,49 @@ fn the_python_package_is_built_installed_tested_and_typed() {
             .args(["-m", "pip", "install", "--quiet", "--no-deps", "--no-index"])
             .arg(&wheel),
     );
-    // From another folder, so that the sources are not what is imported.
+    Some((dir, python))
+}
+
+/// The tests of the package, from another folder, so that the sources are not what is imported.
+fn pytest(dir: &Path, python: &Path, more: &[&str]) {
     let tests = format!("{FOLDER}/tests");
     done(
-        Command::new(&python)
-            .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", &tests])
+        Command::new(python)
+            .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
+            .args(more)
+            .arg(&tests)
             .env("ENDAT_GEN", env!("CARGO_BIN_EXE_endat-gen"))
             .env("ENDAT_SERVICE", crate::hosts::quick_service_file())
-            .current_dir(&dir),
+            .current_dir(dir),
     );
+}
+
+/// Catches whatever breaks the package: a wheel without a file, a changed library, a promise in the types that is not kept.
+#[test]
+fn the_python_package_is_built_installed_tested_and_typed() {
+    let check = "the Python package is built, installed and tested";
+    let Some((dir, python)) = installed("python", check) else {
+        return;
+    };
+    pytest(&dir, &python, &[]);
     // The installed types, in the strict reading of somebody who uses them.
-    done(
-        Command::new(&python)
-            .args(["-m", "mypy", "--strict", "--cache-dir"])
-            .args([Path::new("cache"), Path::new(&tests)])
-            .current_dir(&dir),
-    );
-    done(
-        Command::new(&python)
-            .args([
-                "-m",
-                "mypy",
-                "--strict",
-                "--cache-dir",
-                "cache",
-                "-p",
-                "endat",
-            ])
-            .current_dir(&dir),
-    );
+    let tests = format!("{FOLDER}/tests");
+    for what in [&[tests.as_str()][..], &["-p", "endat"]] {
+        done(
+            Command::new(&python)
+                .args(["-m", "mypy", "--strict", "--cache-dir", "cache"])
+                .args(what)
+                .current_dir(&dir),
+        );
+    }
     fs::remove_dir_all(&dir).unwrap();
+}
+
+#[test]
+#[ignore = "slow: the Python package records an hour, and runs notebook and tutorial as printed"]
+fn the_python_package_records_an_hour() {
+    if let Some((dir, python)) = installed("python-slow", "slow tests of the Python package") {
+        pytest(&dir, &python, &["-m", "slow"]);
+        fs::remove_dir_all(&dir).unwrap();
+    }
 }

@@ -19,7 +19,9 @@ static LISTED: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
     let names = lists
         .flatten()
         .flat_map(|list| list.as_array().unwrap().iter());
-    names.map(|name| name.as_str().unwrap().to_owned()).collect()
+    names
+        .map(|name| name.as_str().unwrap().to_owned())
+        .collect()
 });
 
 /// Checks that the page on programs of others names this program or module.
@@ -52,4 +54,13 @@ pub fn require_python(module: &str, check: &str) -> bool {
         .stderr(Stdio::null())
         .status();
     import.is_ok_and(|s| s.success()) || skip(&format!("Python module {module}"), check)
+}
+
+/// Says that a check is skipped for lack of something that the command in `why` brings.
+///
+/// # Panics
+/// In CI.
+pub fn lacks(why: &str, check: &str) {
+    assert!(std::env::var_os("CI").is_none(), "{check}: {why}");
+    cannot(why, check);
 }

@@ -18,7 +18,10 @@ fn a_few_random_configurations_are_clean_in_every_language() {
     let part = ["campaign", "configurations", "--quick", "--shard", "1/5"];
     let outcome = run(&part);
     assert_eq!(outcome.exit_code, 0, "{outcome:?}");
-    assert!(outcome.stdout.contains("complains about: 0 of "), "{outcome:?}");
+    assert!(
+        outcome.stdout.contains("complains about: 0 of "),
+        "{outcome:?}"
+    );
 }
 
 /// Catches a panic, too, and a part that draws what another one draws.

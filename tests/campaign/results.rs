@@ -23,14 +23,7 @@ fn duckdb_and_pandas_count_what_the_campaign_counted() {
     }
     let folder = tools::folder("campaign_results");
     let out = folder.join("upsets.csv");
-    let campaign = [
-        "campaign",
-        "upsets",
-        "--subject",
-        "port",
-        "--cases",
-        "12000",
-    ];
+    let campaign = ["campaign", "upsets", "--subject", "port", "--cases", "3000"];
     let outcome = run(&[&campaign[..], &["--out", out.to_str().unwrap()]].concat());
     assert_eq!(outcome.exit_code, 0, "{outcome:?}");
     let tally = Part::read(&out).unwrap().tally;

@@ -338,7 +338,7 @@ impl Line {
 /// Catches a log that gives up a card which has run on, or does not count what was missed.
 #[test]
 fn a_log_goes_on_when_only_the_link_was_lost() {
-    for more in [&["--samples", "400"][..], &["--samples", "200", "--poll"]] {
+    for more in [&["--samples", "150"][..], &["--samples", "80", "--poll"]] {
         let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
         let line = Line::new(&card);
         let port = format!("tcp:{}", line.door.local_addr().unwrap());
@@ -348,7 +348,7 @@ fn a_log_goes_on_when_only_the_link_was_lost() {
         for end in ends {
             end.shutdown(Shutdown::Both).unwrap();
         }
-        thread::sleep(Duration::from_secs(2));
+        thread::sleep(Duration::from_millis(700));
         let _ends = line.connect();
         let (outcome, rows) = log.end();
         let wanted: usize = more[1].parse().unwrap();

@@ -18,7 +18,7 @@ def byte_address(word):
 
 def check(bus):
     assert bus.read(byte_address(ID)) == 0x456E4474
-    assert bus.read(byte_address(SYSTEM_HZ)) == 100_000_000
+    assert bus.read(byte_address(SYSTEM_HZ)) == 10_000_000
     for value in (0x12345600, 0xFFFFFF00, 0):
         bus.write(byte_address(HOLD), value)
         assert bus.read(byte_address(HOLD)) == value
@@ -56,7 +56,7 @@ def main(port, csr_csv):
         bus = RemoteClient(port=SERVER_PORT, csr_csv=csr_csv)
         bus.open()
         assert bus.regs.card_id.read() == 0x456E4474
-        assert bus.constants.config_clock_frequency == 100_000_000
+        assert bus.constants.config_clock_frequency == 10_000_000
         assert bus.bases.result1 == byte_address(RESULT + 8)
         bus.close()
         shown = subprocess.check_output(

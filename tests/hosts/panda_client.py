@@ -15,7 +15,7 @@ from pandablocks.blocking import BlockingClient
 from pandablocks.commands import Arm, Get, GetBlockInfo, GetFieldInfo, GetState, Identify
 from pandablocks.responses import EndData, ReadyData, StartData
 
-SAMPLES = 400
+SAMPLES = 100
 RATE_HZ = 5_000
 CHANNELS = 2
 

@@ -1,6 +1,6 @@
 //! Virtual cards behind ports: TCP and pseudo terminals, in threads of the test.
 
-use super::{card_of, changed, QUICK};
+use super::{card_of, changed, QUICKER};
 use endat_gen::config::Project;
 use endat_gen::virtual_card::{serve, Door};
 use endat_host::transport::Port;
@@ -50,7 +50,7 @@ impl Drop for Served {
 
 /// A quick card that samples slowly enough for a machine that simulates slowly.
 pub fn slow_card() -> Project {
-    let mut changes = QUICK;
+    let mut changes = QUICKER;
     changes[5] = ("sample_hz = 10_000", "sample_hz = 1_000");
     changed("s6_two_channel", &changes)
 }

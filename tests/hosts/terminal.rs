@@ -1,6 +1,6 @@
 //! The program at a terminal: the screen of `monitor`, the bar of `log`, colours.
 
-use super::{slow_card, Served};
+use super::{quicker_service_port, slow_card, Served};
 use crate::program::{program, Dir};
 use endat_gen::virtual_card::Door;
 use serialport::{SerialPort, TTYPort};
@@ -170,9 +170,9 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
     let log = [
         "log",
         "--port",
-        "virtual",
+        quicker_service_port(),
         "--samples",
-        "1000",
+        "300",
         "--force",
         "--out",
         &out,
@@ -181,7 +181,7 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
     let (seen, code) = terminal.end();
     assert_eq!(code, Some(0), "{seen:?}");
     assert!(
-        seen.contains(" of 1000 sample sets, ") && seen.contains(" left") && seen.contains("[="),
+        seen.contains(" of 300 sample sets, ") && seen.contains(" left") && seen.contains("[="),
         "{seen:?}"
     );
     // The message behind it has its colour.
@@ -189,7 +189,7 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
     let output = program().args(log).output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(!told.contains('\x1b') && !told.contains('['), "{told}");
-    assert!(told.starts_with("100 of 1000 sample sets"), "{told}");
+    assert!(told.starts_with("100 of 300 sample sets"), "{told}");
 }
 
 /// Catches colour in a file, and where nobody wants it.

@@ -6,18 +6,35 @@ from pathlib import Path
 import matplotlib
 import pytest
 
+#: The card of the notebooks.
+PORT = "virtual:s6_two_channel_service"
 NOTEBOOKS = sorted((Path(__file__).parent.parent / "examples").glob("*.ipynb"))
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
-def test_a_notebook_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def run(path: Path, port: str, rows: int) -> None:
+    """Runs a notebook at a port, with so many rows instead of the first 600."""
     matplotlib.use("Agg")
-    monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
-    for cell in json.loads(path.read_text())["cells"]:
+    text = path.read_text()
+    assert text.count(PORT) == 1 and text.count("card.samples(600)") == 1
+    text = text.replace(PORT, port).replace("card.samples(600)", f"card.samples({rows})")
+    for cell in json.loads(text)["cells"]:
         assert not cell.get("outputs"), "outputs are not committed"
         if cell["cell_type"] == "code":
             exec("".join(cell["source"]), names)
     figure = names["figure"]
     figure.savefig("figure.png")  # type: ignore[attr-defined]
     assert len(figure.axes[0].lines) == 2  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
+def test_a_notebook_runs_with_a_quick_card(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, service: str) -> None:
+    monkeypatch.chdir(tmp_path)
+    run(path, service, 100)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
+def test_a_notebook_runs_as_printed(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    run(path, PORT, 600)

@@ -1,4 +1,4 @@
-"""The program on the tutorial's page, as it stands."""
+"""The program on the tutorial's page."""
 
 import re
 from pathlib import Path
@@ -8,13 +8,28 @@ import pytest
 PAGE = Path(__file__).parents[3] / "docs" / "tutorial.md"
 
 
-def test_the_tutorial_records_what_others_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Catches a call on the page that has another name now, and a file without units."""
+#: The card of the page.
+PORT = "virtual:s6_two_channel_service"
+
+
+def follow(port: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Runs the program at a port."""
     found = re.search(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert found
-    monkeypatch.chdir(tmp_path)
-    exec(compile(found[1], str(PAGE), "exec"), {"__name__": "tutorial"})
+    assert found and found[1].count(PORT) == 1
+    exec(compile(found[1].replace(PORT, port), str(PAGE), "exec"), {"__name__": "tutorial"})
     shown = capsys.readouterr().out
     assert "(500,)" in shown and "unit" in shown and "deg" in shown, shown
+
+
+def test_the_tutorial_records_what_others_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], service: str
+) -> None:
+    """Catches a call on the page that has another name now, and a file without units: with a quick card."""
+    monkeypatch.chdir(tmp_path)
+    follow(service, capsys)
+
+
+@pytest.mark.slow
+def test_the_tutorial_works_as_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    follow(PORT, capsys)
