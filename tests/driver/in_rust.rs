@@ -110,7 +110,11 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
         // The card finds out what comes: one or two frames end with the pause of an aborted one.
         let is_there = |moment: &Moment| moment.results()[0].infos[0].came;
         for _ in 0..4 {
-            if self.card.measure(5_000).is_ok_and(|moment| is_there(&moment)) {
+            if self
+                .card
+                .measure(5_000)
+                .is_ok_and(|moment| is_there(&moment))
+            {
                 break;
             }
             self.world.pause_us(32_000);

@@ -378,7 +378,7 @@ static void plug(int has_service)
     measure_well();
     good = moment.channel[0].sequence;
     pause_us(200);
-    ask("unplug 0 18 0");
+    ask("unplug 0 20 0");
     pause_us(10 * MS);
     error = endat_measure(&card, &moment, 2 * MS);
     CHECK(!moment.channel[0].fresh || (moment.channel[0].stale && moment.channel[0].sequence == good), "%s", endat_error_text(error));

@@ -19,8 +19,8 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-/// System clock of these cards: low, so that milliseconds are few cycles.
-pub const SYSTEM_HZ: u64 = 8_000_000;
+/// System clock of these cards: milliseconds are few cycles, and an initialisation does not take a slower one.
+const SYSTEM_HZ: u64 = 8_000_000;
 
 /// EnDat clock.
 pub const ENDAT_HZ: u32 = 1_000_000;
