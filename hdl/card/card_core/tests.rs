@@ -5,9 +5,10 @@ use crate::protocols::t_format::cause;
 use crate::regs::tests::{mixed_config, test_config};
 use crate::regs::{Access, Block as RegisterBlock, CARD, CARD_CONFIG, RESULT, T_FORMAT};
 use rtl_design::elaborate::elaborate;
-use rtl_design::engine::{Compiled, Engine, Keep};
+use rtl_design::engine::{Compiled, Engine, Keep, PortId};
 use rust_hdl::prelude::Block;
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock};
 
 mod held;
 mod own_triggers;
@@ -20,7 +21,12 @@ const BIT: usize = 8;
 struct Host {
     card: Compiled,
     /// Where a net is, by its hierarchical name.
-    nets: BTreeMap<String, usize>,
+    nets: Arc<BTreeMap<String, usize>>,
+    /// Ports and nets of every cycle.
+    rx_port: PortId,
+    tx_net: usize,
+    clk_nets: Vec<usize>,
+    calibrate_nets: Vec<usize>,
     /// Cycles in which each EnDat clock fell.
     falls: Vec<Vec<u64>>,
     clk: Vec<bool>,
@@ -28,6 +34,33 @@ struct Host {
     /// Cycles with a calibrate strobe, per channel.
     calibrations: Vec<usize>,
     cycle: u64,
+}
+
+/// The card of a configuration before its first cycle. Compiling takes longer than most tests, so each card is compiled once.
+fn compiled(config: &CardConfig) -> (Compiled, Arc<BTreeMap<String, usize>>) {
+    type Made = Arc<OnceLock<(Compiled, Arc<BTreeMap<String, usize>>)>>;
+    static MADE: Mutex<Vec<(CardConfig, Made)>> = Mutex::new(Vec::new());
+    let made = {
+        let mut all = MADE.lock().unwrap();
+        match all.iter().find(|(of, _)| of == config) {
+            Some((_, made)) => made.clone(),
+            None => {
+                let made = Made::default();
+                all.push((config.clone(), made.clone()));
+                made
+            }
+        }
+    };
+    let compile = || {
+        let mut card = Card::with_timeout(config, 100);
+        card.connect_all();
+        let design = elaborate(&card, "card").unwrap();
+        let card = Compiled::keeping(&design, Keep::Nets).unwrap();
+        let names = card.nets().map(str::to_owned);
+        let nets = names.enumerate().map(|(at, name)| (name, at)).collect();
+        (card, Arc::new(nets))
+    };
+    made.get_or_init(compile).clone()
 }
 
 impl Host {
@@ -51,13 +84,14 @@ impl Host {
         for channel in &mut config.channels {
             channel.abort_us = 2;
         }
-        let mut card = Card::with_timeout(&config, 100);
-        card.connect_all();
-        let design = elaborate(&card, "card").unwrap();
-        let card = Compiled::keeping(&design, Keep::Nets).unwrap();
-        let names = card.nets().map(str::to_owned);
+        let (card, nets) = compiled(&config);
+        let each = |name: fn(usize) -> String| (0..channels).map(|i| nets[&name(i)]).collect();
         let mut host = Self {
-            nets: names.enumerate().map(|(at, name)| (name, at)).collect(),
+            rx_port: card.port("uart_rx_i"),
+            tx_net: nets["uart_tx_o"],
+            clk_nets: each(|i| format!("endat_clk{i}_o")),
+            calibrate_nets: each(|i| format!("core.port_{i}.calibrate")),
+            nets,
             card,
             falls: vec![Vec::new(); channels],
             clk: vec![true; channels],
@@ -83,10 +117,14 @@ impl Host {
 
     /// What a net has now.
     fn net(&mut self, name: &str) -> u64 {
-        let Some(value) = self.nets.get(name).and_then(|at| self.card.peek(*at)) else {
+        let Some(at) = self.nets.get(name) else {
             panic!("{name}: no such net");
         };
-        value as u64
+        self.peek(*at)
+    }
+
+    fn peek(&mut self, net: usize) -> u64 {
+        self.card.peek(net).unwrap() as u64
     }
 
     fn is_busy(&mut self, channel: usize) -> bool {
@@ -99,18 +137,17 @@ impl Host {
     }
 
     fn step(&mut self, rx: bool) {
-        self.set("uart_rx_i", rx);
+        self.card.set(self.rx_port, rx.into());
         self.card.tick();
         for i in 0..self.falls.len() {
-            let clk = self.net(&format!("endat_clk{i}_o")) == 1;
+            let clk = self.peek(self.clk_nets[i]) == 1;
             if self.clk[i] && !clk {
                 self.falls[i].push(self.cycle);
             }
             self.clk[i] = clk;
-            let calibrate = self.net(&format!("core.port_{i}.calibrate"));
-            self.calibrations[i] += calibrate as usize;
+            self.calibrations[i] += self.peek(self.calibrate_nets[i]) as usize;
         }
-        let tx = self.net("uart_tx_o") == 1;
+        let tx = self.peek(self.tx_net) == 1;
         self.tx.push(tx);
         self.cycle += 1;
     }

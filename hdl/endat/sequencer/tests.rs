@@ -579,7 +579,7 @@ fn check(seed: u64, cycles: u64, runs: usize) -> Result<(), String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, max_shrink_iters: 0, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 6, failure_persistence: None, max_shrink_iters: 0, ..ProptestConfig::default() })]
 
     #[test]
     fn random_programs_do_what_the_model_does(seed: u64) {
@@ -588,6 +588,22 @@ proptest! {
 
     #[test]
     fn two_runs_of_random_programs_do_what_two_models_do(seed: u64) {
+        check(seed, 3000, 2).map_err(TestCaseError::fail)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 120, failure_persistence: None, max_shrink_iters: 0, ..ProptestConfig::default() })]
+
+    #[test]
+    #[ignore = "slow: 120 random programs"]
+    fn many_random_programs_do_what_the_model_does(seed: u64) {
+        check(seed, 3000, 1).map_err(TestCaseError::fail)?;
+    }
+
+    #[test]
+    #[ignore = "slow: two runs of 120 random programs"]
+    fn two_runs_of_many_random_programs_do_what_two_models_do(seed: u64) {
         check(seed, 3000, 2).map_err(TestCaseError::fail)?;
     }
 }
