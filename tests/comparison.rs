@@ -38,6 +38,7 @@ fn the_page_is_what_the_command_writes() {
 
 /// Catches a figure of the data file that was typed.
 #[test]
+#[ignore = "slow: logic cells that nextpnr packs"]
 fn logic_cells_are_what_place_and_route_packs() {
     if !area::is_available() {
         assert!(

@@ -1,9 +1,12 @@
 //! The rules of the house, where a tool can see them: lengths of files, functions and test binaries, no import in a circle, slow tests that
 //! say what they cover.
 
+mod suite;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 use syn::{ImplItemFn, ItemFn, ItemImpl, ItemMod, ItemStruct, ItemUse, UseTree};
@@ -23,8 +26,6 @@ const CRATES: [&str; 10] = [
 ];
 /// Longest file.
 const FILE_LINES: usize = 500;
-/// Longest test binary: the sum of its files. A longer one is slow to build, and has too many topics.
-const BINARY_LINES: usize = 10_000;
 /// Longest function.
 const FUNCTION_LINES: usize = 120;
 /// Longest `update` of a kernel; its parts are functions as others are.
@@ -75,14 +76,54 @@ const NAME_T_FORMAT: [&str; 26] = [
     "sim/scenario/mod.rs",
 ];
 
-/// A source of the product, without its tests.
+/// A source of the product, without its tests: what the rules look at.
 struct Source {
     /// Path from the root of the repository.
     path: String,
     /// Crate and modules that lead to it.
     module: Vec<String>,
     lines: usize,
-    parsed: syn::File,
+    /// Functions that are too long, and their lines.
+    long: Vec<(String, usize)>,
+    /// Blocks, and their ports.
+    blocks: Vec<(String, usize)>,
+    /// Names in its code.
+    names: BTreeSet<String>,
+    /// Paths that it names, from its crate on.
+    paths: BTreeSet<Vec<String>>,
+    /// Names that it hands on, and the paths that they come from; `*` for all.
+    hands_on: Vec<(String, Vec<String>)>,
+}
+
+impl Source {
+    fn new(path: String, module: Vec<String>, children: BTreeSet<String>, text: &str) -> Self {
+        let parsed = syn::parse_file(text).unwrap_or_else(|e| panic!("{path}: {e}"));
+        let (mut functions, mut ports) = (Functions::default(), Ports::default());
+        functions.visit_file(&parsed);
+        ports.visit_file(&parsed);
+        let mut code = Code::default();
+        code.visit_file(&parsed);
+        let mut names = Names {
+            module: &module,
+            children,
+            paths: BTreeSet::new(),
+            hands_on: vec![],
+        };
+        names.visit_file(&parsed);
+        let Names {
+            paths, hands_on, ..
+        } = names;
+        Self {
+            lines: text.lines().count(),
+            long: functions.long,
+            blocks: ports.0,
+            names: code.0,
+            paths,
+            hands_on,
+            path,
+            module,
+        }
+    }
 }
 
 fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -95,7 +136,8 @@ fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-fn sources() -> Vec<Source> {
+/// Parsed once for all tests: that takes longer than they do.
+static SOURCES: LazyLock<Vec<Source>> = LazyLock::new(|| {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut all = BTreeMap::new();
     for name in CRATES {
@@ -116,24 +158,25 @@ fn sources() -> Vec<Source> {
             }
             let own = |p: &String| !["lib", "mod"].contains(&p.as_str());
             let module = std::iter::once(name.to_owned()).chain(parts.into_iter().filter(own));
-            let text = fs::read_to_string(&path).unwrap();
-            let path = path
-                .strip_prefix(root)
-                .unwrap()
-                .to_str()
-                .unwrap()
-                .to_owned();
-            let source = Source {
-                module: module.collect(),
-                lines: text.lines().count(),
-                parsed: syn::parse_file(&text).unwrap_or_else(|e| panic!("{path}: {e}")),
-                path: path.clone(),
-            };
+            let file = path.strip_prefix(root).unwrap().to_str().unwrap();
             // A crate inside another one's folder is its own.
-            all.entry(path).or_insert(source);
+            all.entry(file.to_owned())
+                .or_insert_with(|| module.collect::<Vec<String>>());
         }
     }
-    all.into_values().collect()
+    let sources = all.iter().map(|(path, module)| {
+        let others = all
+            .values()
+            .filter(|other| other.len() == module.len() + 1 && other.starts_with(module));
+        let children = others.map(|other| other.last().unwrap().clone()).collect();
+        let text = fs::read_to_string(root.join(path)).unwrap();
+        Source::new(path.clone(), module.clone(), children, &text)
+    });
+    sources.collect()
+});
+
+fn sources() -> &'static [Source] {
+    &SOURCES
 }
 
 fn is_test(attributes: &[syn::Attribute]) -> bool {
@@ -275,23 +318,6 @@ fn imports(sources: &[Source]) -> Vec<BTreeSet<usize>> {
         .zip(sources)
         .map(|(index, s)| (&s.module[..], index))
         .collect();
-    let names: Vec<Names> = sources
-        .iter()
-        .map(|source| {
-            let children = sources.iter().filter(|other| {
-                other.module.len() == source.module.len() + 1
-                    && other.module.starts_with(&source.module)
-            });
-            let mut names = Names {
-                module: &source.module,
-                children: children.map(|c| c.module.last().unwrap().clone()).collect(),
-                paths: BTreeSet::new(),
-                hands_on: vec![],
-            };
-            names.visit_file(&source.parsed);
-            names
-        })
-        .collect();
     // The source that a path leads to, behind what others hand on.
     let home = |path: &[String]| {
         let mut path = path.to_vec();
@@ -303,7 +329,7 @@ fn imports(sources: &[Source]) -> Vec<BTreeSet<usize>> {
             let Some(name) = path.get(length) else {
                 return Some(at);
             };
-            let handed = names[at].hands_on.iter().find(|(n, _)| n == name);
+            let handed = sources[at].hands_on.iter().find(|(n, _)| n == name);
             let Some((_, from)) = handed else {
                 return Some(at);
             };
@@ -312,7 +338,11 @@ fn imports(sources: &[Source]) -> Vec<BTreeSet<usize>> {
         None
     };
     let edges = |index: usize| {
-        let mut to: BTreeSet<usize> = names[index].paths.iter().filter_map(|p| home(p)).collect();
+        let mut to: BTreeSet<usize> = sources[index]
+            .paths
+            .iter()
+            .filter_map(|p| home(p))
+            .collect();
         // A part may use what the whole is made of: folder and file of a module are one.
         to.retain(|to| !sources[index].module.starts_with(&sources[*to].module));
         to
@@ -350,7 +380,7 @@ fn circles(edges: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
 fn no_import_goes_in_a_circle() {
     let sources = sources();
     assert!(sources.len() > 200, "{} sources", sources.len());
-    let edges = imports(&sources);
+    let edges = imports(sources);
     let told: Vec<String> = circles(&edges)
         .into_iter()
         .map(|circle| {
@@ -373,10 +403,8 @@ fn files_and_functions_are_short() {
         if source.lines > FILE_LINES {
             found.insert(source.path.clone(), source.lines);
         }
-        let mut functions = Functions::default();
-        functions.visit_file(&source.parsed);
-        let named = |(name, lines)| (format!("{}: {name}", source.path), lines);
-        found.extend(functions.long.into_iter().map(named));
+        let named = |(name, lines): &(String, usize)| (format!("{}: {name}", source.path), *lines);
+        found.extend(source.long.iter().map(named));
     }
     for (name, at_most) in LONGER {
         let lines = found
@@ -412,133 +440,11 @@ impl<'ast> Visit<'ast> for Ports {
 
 #[test]
 fn a_block_has_few_ports() {
-    let mut all = Ports::default();
-    let sources = sources();
-    let blocks = sources.iter().filter(|s| s.path.starts_with("hdl/"));
-    blocks.for_each(|source| all.visit_file(&source.parsed));
-    assert!(all.0.len() > 50, "only {} blocks found", all.0.len());
-    all.0.retain(|(_, ports)| *ports > PORTS);
-    assert!(all.0.is_empty(), "more than {PORTS} ports: {:?}", all.0);
-}
-
-/// Adds a file of a crate and the files of its modules. `folder` is the place of the modules that it declares.
-fn add_modules(file: &Path, folder: &Path, found: &mut BTreeSet<PathBuf>) {
-    let file = file
-        .canonicalize()
-        .unwrap_or_else(|e| panic!("{}: {e}", file.display()));
-    let parsed = syn::parse_file(&fs::read_to_string(&file).unwrap()).unwrap();
-    let place = file.parent().unwrap().to_owned();
-    if found.insert(file) {
-        add_declared(&parsed.items, &place, folder, found);
-    }
-}
-
-/// Adds the modules that these items declare; `place` is the folder of their file, `folder` that of its modules.
-fn add_declared(items: &[syn::Item], place: &Path, folder: &Path, found: &mut BTreeSet<PathBuf>) {
-    for item in items {
-        let syn::Item::Mod(module) = item else {
-            continue;
-        };
-        let inside = folder.join(module.ident.to_string());
-        let path = module.attrs.iter().find_map(|a| {
-            let value = &a.meta.require_name_value().ok()?.value;
-            let syn::Expr::Lit(literal) = value else {
-                return None;
-            };
-            match &literal.lit {
-                syn::Lit::Str(text) if a.path().is_ident("path") => Some(text.value()),
-                _ => None,
-            }
-        });
-        match (&module.content, path) {
-            (Some((_, items)), _) => add_declared(items, &inside, &inside, found),
-            (None, Some(path)) => {
-                let file = place.join(path);
-                add_modules(&file, file.parent().unwrap(), found);
-            }
-            (None, None) => {
-                let single = inside.with_extension("rs");
-                let file = match single.exists() {
-                    true => single,
-                    false => inside.join("mod.rs"),
-                };
-                add_modules(&file, &inside, found);
-            }
-        }
-    }
-}
-
-#[test]
-fn no_test_binary_is_above_10_000_lines() {
-    let members = crate::packages::members();
-    let packages = members["packages"].as_array().unwrap().iter();
-    let targets = packages.flat_map(|p| p["targets"].as_array().unwrap());
-    let mut lines = BTreeMap::new();
-    for target in targets.filter(|t| t["kind"][0] == "test") {
-        let file = Path::new(target["src_path"].as_str().unwrap());
-        let mut files = BTreeSet::new();
-        add_modules(file, file.parent().unwrap(), &mut files);
-        let of = |file: &PathBuf| fs::read_to_string(file).unwrap().lines().count();
-        lines.insert(
-            target["name"].as_str().unwrap(),
-            files.iter().map(of).sum::<usize>(),
-        );
-    }
-    for name in [
-        "emission", "cards", "programs", "delivery", "endat", "blocks", "designs",
-    ] {
-        assert!(lines[name] > 1_000, "{lines:?}");
-    }
-    lines.retain(|_, lines| *lines > BINARY_LINES);
-    assert!(lines.is_empty(), "above {BINARY_LINES} lines: {lines:?}");
-}
-
-/// Every file of the repository in folders that people write.
-fn written_files() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut files = vec![];
-    let folders = ["tests", "gen", "drivers", "campaigns", ".ci"];
-    for folder in CRATES.iter().chain(&folders) {
-        let folder = root.join(folder);
-        if folder.exists() {
-            walk(&folder, &mut files);
-        }
-    }
-    files.sort();
-    files.dedup();
-    files
-}
-
-/// Verdicts of earlier runs are not kept: a test that is in the suite runs. One that is too slow is ignored, and its reason says what it
-/// covers: CI runs these at night.
-#[test]
-fn slow_tests_say_what_they_cover_and_no_verdict_is_kept() {
-    let files = written_files();
-    assert!(files.len() > 500, "{} files", files.len());
-    let mut slow = 0;
-    for path in files {
-        let name = path.file_name().unwrap().to_str().unwrap();
-        let path_text = path.display();
-        assert!(
-            !["passed.toml", "passed.rs"].contains(&name),
-            "{path_text}: keeps verdicts; delete it"
-        );
-        if !name.ends_with(".rs") {
-            continue;
-        }
-        let text = fs::read_to_string(&path).unwrap();
-        for (number, line) in (1..).zip(text.lines()) {
-            if line.trim_start().starts_with("#[ignore") {
-                let reason = line.trim().strip_prefix("#[ignore = \"slow: ");
-                assert!(
-                    reason.is_some_and(|r| r.len() > "\"]".len()),
-                    "{path_text}:{number}: give the reason: #[ignore = \"slow: WHAT IT COVERS\"]"
-                );
-                slow += 1;
-            }
-        }
-    }
-    assert!(slow > 0, "no slow test");
+    let blocks = sources().iter().filter(|s| s.path.starts_with("hdl/"));
+    let mut all: Vec<_> = blocks.flat_map(|source| &source.blocks).collect();
+    assert!(all.len() > 50, "only {} blocks found", all.len());
+    all.retain(|(_, ports)| *ports > PORTS);
+    assert!(all.is_empty(), "more than {PORTS} ports: {all:?}");
 }
 
 /// The compiler is for any block of rust-hdl: nothing in it is named after what it compiles here, and it needs no other crate of ours.
@@ -558,52 +464,49 @@ fn the_compiler_knows_no_endat() {
     }
 }
 
-/// Whether a file has such a name in its code; what stands in texts and comments says something to people only.
+/// Names in the code of a file; texts and comments say something to people only.
+#[derive(Default)]
+struct Code(BTreeSet<String>);
+
+impl Code {
+    fn look(&mut self, tokens: proc_macro2::TokenStream) {
+        for token in tokens {
+            match token {
+                proc_macro2::TokenTree::Ident(name) => self.visit_ident(&name),
+                proc_macro2::TokenTree::Group(group) => self.look(group.stream()),
+                _ => {}
+            }
+        }
+    }
+}
+
+impl<'ast> Visit<'ast> for Code {
+    fn visit_ident(&mut self, name: &proc_macro2::Ident) {
+        self.0.insert(name.to_string());
+    }
+
+    fn visit_macro(&mut self, call: &'ast syn::Macro) {
+        self.look(call.tokens.clone());
+    }
+
+    fn visit_attribute(&mut self, _: &'ast syn::Attribute) {}
+
+    fn visit_item_fn(&mut self, function: &'ast ItemFn) {
+        if !is_test(&function.attrs) {
+            visit::visit_item_fn(self, function);
+        }
+    }
+
+    fn visit_item_mod(&mut self, module: &'ast ItemMod) {
+        if !is_test(&module.attrs) {
+            visit::visit_item_mod(self, module);
+        }
+    }
+}
+
+/// True if a file has such a name in its code.
 fn is_naming(source: &Source, is_named: fn(&str) -> bool) -> bool {
-    struct Search {
-        is_named: fn(&str) -> bool,
-        found: bool,
-    }
-    impl Search {
-        fn look(&mut self, tokens: proc_macro2::TokenStream) {
-            for token in tokens {
-                match token {
-                    proc_macro2::TokenTree::Ident(name) => self.visit_ident(&name),
-                    proc_macro2::TokenTree::Group(group) => self.look(group.stream()),
-                    _ => {}
-                }
-            }
-        }
-    }
-    impl<'ast> Visit<'ast> for Search {
-        fn visit_ident(&mut self, name: &proc_macro2::Ident) {
-            self.found |= (self.is_named)(&name.to_string());
-        }
-
-        fn visit_macro(&mut self, call: &'ast syn::Macro) {
-            self.look(call.tokens.clone());
-        }
-
-        fn visit_attribute(&mut self, _: &'ast syn::Attribute) {}
-
-        fn visit_item_fn(&mut self, function: &'ast ItemFn) {
-            if !is_test(&function.attrs) {
-                visit::visit_item_fn(self, function);
-            }
-        }
-
-        fn visit_item_mod(&mut self, module: &'ast ItemMod) {
-            if !is_test(&module.attrs) {
-                visit::visit_item_mod(self, module);
-            }
-        }
-    }
-    let mut search = Search {
-        is_named,
-        found: false,
-    };
-    search.visit_file(&source.parsed);
-    search.found
+    source.names.iter().any(|name| is_named(name))
 }
 
 /// Catches a new place that asks which bus a card stands behind: the next front would have to be told there, too. Shown by the one that came last.

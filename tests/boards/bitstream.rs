@@ -28,15 +28,22 @@ pub fn small_card(dir: &Dir, board: &str) -> String {
 #[cfg(unix)]
 fn stand_ins(dir: &Dir) -> String {
     use std::os::unix::fs::PermissionsExt;
-    let report = r#"{"fmax": {"pll_clk": {"achieved": 80.5, "constraint": 66.0}},
+    let report = r#"{"fmax": {"clk": {"achieved": 150.5, "constraint": '$mhz'}},
         "utilization": {"ICESTORM_LC": {"used": 1500, "available": 7680}, "ICESTORM_PLL": {"used": 1, "available": 2}}}"#;
+    let synthesis = "for script; do :; done\ncase \"$script\" in *synth_ice40*) echo '{}' > card.json;; *) exit 1;; esac";
+    let place = format!(
+        "[ -s card.json ] && [ -s card.pcf ] && echo placed > card.asc\n\
+         while [ $# -gt 0 ]; do [ \"$1\" = --freq ] && mhz=$2; shift; done\necho '{report}' > report.json"
+    );
+    let pack = "[ -s \"$1\" ] && head -c 20000 /dev/zero > \"$2\"";
     fs::create_dir_all(dir.0.join("bin")).unwrap();
     for (name, text) in [
-        ("yosys", "for script; do :; done\ncase \"$script\" in *synth_ice40*) echo '{}' > card.json;; *) exit 1;; esac".to_owned()),
-        ("nextpnr-ice40", format!("[ -s card.json ] && [ -s card.pcf ] && echo asc > card.asc\ncat > report.json << 'END'\n{report}\nEND")),
-        ("icepack", "[ -s \"$1\" ] && head -c 20000 /dev/zero > \"$2\"".to_owned()),
+        ("yosys", synthesis),
+        ("nextpnr-ice40", &place),
+        ("icepack", pack),
     ] {
-        let file = dir.write(&format!("bin/yowasp-{name}"), format!("#!/bin/sh\n{text}\n").as_bytes());
+        let file = format!("bin/yowasp-{name}");
+        let file = dir.write(&file, format!("#!/bin/sh\n{text}\n").as_bytes());
         fs::set_permissions(file, fs::Permissions::from_mode(0o755)).unwrap();
     }
     let path = std::env::var("PATH").unwrap_or_default();

@@ -186,6 +186,18 @@ fn handed(place: &Path) -> String {
 /// Catches a target without the clock that the card needs, and one that ends with a bitstream whose pins nobody has chosen.
 #[test]
 fn targets_know_the_clock_and_make_no_bitstream_without_pins() {
+    targets_know_the_clock("async_dsp", &["ecp5", "vivado"]);
+}
+
+#[test]
+#[ignore = "slow: every target of FuseSoC for cards and a receiver"]
+fn every_target_knows_the_clock_and_makes_no_bitstream_without_pins() {
+    for name in ["s6_two_channel", "apb_card", "async_dsp"] {
+        targets_know_the_clock(name, &["ice40", "ecp5", "vivado", "quartus"]);
+    }
+}
+
+fn targets_know_the_clock(core: &str, tools: &[&str]) {
     if !require("fusesoc", "FuseSoC targets") {
         return;
     }
@@ -194,7 +206,7 @@ fn targets_know_the_clock_and_make_no_bitstream_without_pins() {
         ("apb_card", card(HostBus::Apb, ""), "100"),
         ("async_dsp", receiver(), "60"),
     ];
-    for (name, files, mhz) in &cores {
+    for (name, files, mhz) in cores.iter().filter(|(name, ..)| *name == core) {
         let period_ns = if *mhz == "60" { "16.667" } else { "10" };
         let rows = [
             ("ice40", format!("--freq {mhz}"), "icepack"),
@@ -206,6 +218,7 @@ fn targets_know_the_clock_and_make_no_bitstream_without_pins() {
             ),
             ("quartus", format!("{name}.sdc"), "\nall: asm"),
         ];
+        let rows = rows.into_iter().filter(|(tool, ..)| tools.contains(tool));
         for (tool, wanted, unwanted) in rows {
             let place = written(files, &format!("fusesoc-{name}-{tool}"));
             let (is_good, told) = target(&place, tool, &["--setup"], &vlnv(name));
@@ -237,6 +250,7 @@ fn targets_know_the_clock_and_make_no_bitstream_without_pins() {
 
 /// The clock that the target asks for is the one that the verdict is about.
 #[test]
+#[ignore = "slow: FuseSoC's target for an iCE40, to its bitstream"]
 fn a_slow_card_meets_its_clock_on_ice40() {
     if !require_all(
         &["fusesoc", "yosys", "nextpnr-ice40"],

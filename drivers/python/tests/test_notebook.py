@@ -11,13 +11,14 @@ PORT = "virtual:s6_two_channel_service"
 NOTEBOOKS = sorted((Path(__file__).parent.parent / "examples").glob("*.ipynb"))
 
 
-def run(path: Path, port: str, rows: int) -> None:
-    """Runs a notebook at a port, with so many rows instead of the first 600."""
+def run(path: Path, port: str, shown: int, recorded: int) -> None:
+    """Runs a notebook at a port; with so many rows that it shows and records, instead of 600 and 500."""
     matplotlib.use("Agg")
     names: dict[str, object] = {}
     text = path.read_text()
-    assert text.count(PORT) == 1 and text.count("card.samples(600)") == 1
-    text = text.replace(PORT, port).replace("card.samples(600)", f"card.samples({rows})")
+    for printed, taken in ((PORT, port), ("card.samples(600)", f"card.samples({shown})"), ("count=500", f"count={recorded}")):
+        assert text.count(printed) == 1, printed
+        text = text.replace(printed, taken)
     for cell in json.loads(text)["cells"]:
         assert not cell.get("outputs"), "outputs are not committed"
         if cell["cell_type"] == "code":
@@ -30,11 +31,11 @@ def run(path: Path, port: str, rows: int) -> None:
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
 def test_a_notebook_runs_with_a_quick_card(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, service: str) -> None:
     monkeypatch.chdir(tmp_path)
-    run(path, service, 100)
+    run(path, service, 80, 20)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
 def test_a_notebook_runs_as_printed(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    run(path, PORT, 600)
+    run(path, PORT, 600, 500)
