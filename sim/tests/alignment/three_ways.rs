@@ -59,7 +59,6 @@ impl Play {
             cycles: columns(&recorded.rows),
             middle: columns(&recorded.middle),
         };
-        println!("{} cycles", stimulus.cycles.len());
         assert_eq!(stimulus.middle.len(), stimulus.cycles.len());
         // The two looks differ: without the falling edge the rest would be another run.
         assert!(stimulus

@@ -91,7 +91,7 @@ impl Make {
         };
         if self.is_hasty {
             (times.power_up_ms, times.after_pulse_ms, times.reset_ms) = (1, 1, 1);
-            (times.write_ms, times.gap_ms) = (0, 0);
+            (times.write_ms, times.gap_ms, times.request_ms) = (0, 0, 20);
         }
         let mut block = EncoderPort::new(fixed, Some(&times), self.wants_short);
         block.connect_all();

@@ -1,6 +1,6 @@
 //! A port with its service at work with an encoder: what the bench drove is played to every execution of the design.
 
-use super::rig::{quick, times};
+use super::rig::{hasty, quick, times};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::endat::{
     channel::FixedTimes,
@@ -25,7 +25,6 @@ struct Life {
     endat_hz: u64,
     /// Clock of the frame that measures the delay.
     calibration_hz: u64,
-    position_bits: u32,
     /// From the first trigger to its result and the end of the frame that measures.
     first: Time,
     /// From one trigger to the next.
@@ -34,8 +33,7 @@ struct Life {
     triggers: u128,
     /// Additional data that the service selects without being asked; otherwise the host lists them.
     info: Option<u8>,
-    /// Recovery time of the encoder.
-    recovery: Time,
+    encoder: EncoderConfig,
 }
 
 impl Life {
@@ -58,10 +56,8 @@ impl Life {
 
     /// Positions, a selection that rides, additional data, a request with a frame of its own; cycle by cycle.
     fn recorded(&self, design: &Design) -> Stimulus {
-        let bits = self.position_bits;
-        let mut encoder = quick(EncoderConfig::endat22(bits));
-        encoder.tm = self.recovery..=self.recovery;
-        let link = Link::new(LineConfig::cable(10.0), encoder);
+        let bits = self.encoder.position_bits;
+        let link = Link::new(LineConfig::cable(10.0), self.encoder.clone());
         let engine = Compiled::new(design).unwrap();
         let mut bench = Bench::new(engine, self.system_hz, vec![(PinNames::channel(), link)]);
         bench.record_cycles();
@@ -125,7 +121,6 @@ impl Life {
             out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, displaced, reply, calibrated, alarm;
             bundles line, settings, window, result, end, record);
         let stimulus = self.recorded(&design);
-        println!("{} cycles", stimulus.cycles.len());
         let seen = three_way(self.name, &mut kernel, &design, &stimulus).unwrap();
         let last = |name: &str| *seen.output(name).last().unwrap();
         assert_eq!((last("sequence"), last("fresh")), (1 + self.triggers, 1));
@@ -136,17 +131,19 @@ impl Life {
 
 #[test]
 fn kernels_engines_and_verilog_agree_on_requests() {
+    let mut encoder = hasty(EncoderConfig::endat22(3));
+    encoder.tm = 2 * US..=3 * US;
+    encoder.tac = 0..=0;
     let short = Life {
         name: "encoder_port",
         system_hz: 10_000_000,
         endat_hz: 1_250_000,
         calibration_hz: 625_000,
-        position_bits: 3,
         first: 120 * US,
         next: 80 * US,
         triggers: 2,
         info: Some(0x4C),
-        recovery: 3 * US,
+        encoder,
     };
     short.agrees();
 }
@@ -159,12 +156,11 @@ fn kernels_engines_and_verilog_agree_on_requests_at_32_mhz() {
         system_hz: 32_000_000,
         endat_hz: 2_000_000,
         calibration_hz: 200_000,
-        position_bits: 13,
         first: 250 * US,
         next: 110 * US,
         triggers: 3,
         info: None,
-        recovery: 11 * US,
+        encoder: quick(EncoderConfig::endat22(13)),
     };
     long.agrees();
 }

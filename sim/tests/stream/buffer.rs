@@ -1,7 +1,6 @@
 //! The buffer: overflow, clear, on and off, readers of every kind.
 
 use super::rig::*;
-use crate::tools;
 use endat_hdl::card::stream::buffer::{frame_bytes, BUFFER_BYTES};
 
 fn channels(n: usize, position: u64) -> Vec<Channel> {
@@ -33,15 +32,13 @@ fn read_bytes(rig: &mut Rig, lane: &mut u8, count: usize) -> Vec<u8> {
     (0..count).map(read).collect()
 }
 
-#[test]
-fn what_does_not_fit_is_dropped_whole_at_every_fill_level() {
-    for n in [1, 2, 8] {
+/// Fills the buffer with sets of so many channels. The reader has stopped at places of a frame that `is_wanted` chooses, by the place and
+/// the frame's length.
+fn fill(all_channels: &[usize], is_wanted: impl Fn(usize, usize) -> bool) {
+    for &n in all_channels {
         let frame = frame_bytes(n, false) as usize;
         let mut rig = Rig::new(1024, n, true, false);
-        // The reader stops at every place of a frame, so the buffer is at every level when a set comes.
-        let places: Vec<usize> = (0..=frame).collect();
-        let turn = include_str!("../../../hdl/card/stream/buffer.rs").len();
-        for &taken in tools::third(&places, turn) {
+        for taken in (0..=frame).filter(|place| is_wanted(*place, frame)) {
             rig.reset();
             let (mut expected, mut got, mut lane) = (Vec::new(), Vec::new(), 0);
             for i in 0..3 {
@@ -77,8 +74,21 @@ fn what_does_not_fit_is_dropped_whole_at_every_fill_level() {
 }
 
 #[test]
-fn every_size_carries_many_times_its_bytes() {
-    for bytes in BUFFER_BYTES {
+fn a_set_that_does_not_fit_is_dropped_whole() {
+    fill(&[1, 2, 8], |place, frame| {
+        [0, 1, frame / 2 + 1, frame].contains(&place)
+    });
+}
+
+/// The reader stops at every place of a frame, so the buffer is at every level when a set comes.
+#[test]
+#[ignore = "slow: every place in a frame"]
+fn what_does_not_fit_is_dropped_whole_at_every_fill_level() {
+    fill(&[1, 2, 8], |_, _| true);
+}
+
+fn carry_many_times_their_bytes(sizes: impl Iterator<Item = u64>) {
+    for bytes in sizes {
         let mut rig = Rig::new(bytes, 2, true, true);
         let mut expected = Vec::new();
         // First as full as it can be, then round and round.
@@ -103,6 +113,17 @@ fn every_size_carries_many_times_its_bytes() {
         }
         assert_eq!(rig.pushed, expected, "{bytes}");
     }
+}
+
+#[test]
+fn the_smallest_buffers_carry_many_times_their_bytes() {
+    carry_many_times_their_bytes(BUFFER_BYTES.into_iter().take(2));
+}
+
+#[test]
+#[ignore = "slow: every size"]
+fn every_size_carries_many_times_its_bytes() {
+    carry_many_times_their_bytes(BUFFER_BYTES.into_iter());
 }
 
 #[test]
@@ -284,10 +305,9 @@ fn a_frame_that_the_host_has_read_half_of_is_not_pushed_and_a_clear_ends_it() {
     }
 }
 
-#[test]
-fn a_clear_at_any_moment_of_a_set_leaves_whole_frames() {
+fn clear_at(moments: impl Iterator<Item = u64>) {
     let mut rig = Rig::new(1024, 2, true, false);
-    for moment in 0..500 {
+    for moment in moments {
         rig.reset();
         whole(&mut rig, 1);
         let second = rig.set_of(&channels(2, 2));
@@ -301,4 +321,15 @@ fn a_clear_at_any_moment_of_a_set_leaves_whole_frames() {
             "{moment}: {sets:?}"
         );
     }
+}
+
+#[test]
+fn a_clear_within_a_set_leaves_whole_frames() {
+    clear_at((0..500).step_by(7));
+}
+
+#[test]
+#[ignore = "slow: every cycle of a set"]
+fn a_clear_at_any_moment_of_a_set_leaves_whole_frames() {
+    clear_at(0..500);
 }

@@ -3,14 +3,16 @@
 use super::lanes::{kind_reply, levels, Conditions, Many, Sent, BIT, LANES};
 use endat_hdl::protocols::t_format::cause;
 
-const FRAMES: usize = 100_000;
+/// Frames of each run: in the slow tests, and in the quick ones.
+const MANY: usize = 100_000;
+const FEW: usize = 5_000;
 
 /// Frames whose start sweeps the bit in 64 steps.
-fn none_is_lost(conditions: Conditions) {
+fn none_is_lost(conditions: Conditions, frames: usize) {
     let mut many = Many::new(conditions, 5);
     let mut frame = 0;
     let mut sequence = 0u8;
-    while frame < FRAMES {
+    while frame < frames {
         let mut expected = vec![];
         let said = many.exchange(|lane, rng| {
             let phase = (frame + lane) as u64 % 64;
@@ -39,30 +41,52 @@ fn none_is_lost(conditions: Conditions) {
     }
 }
 
-#[test]
-fn no_frame_is_lost_at_20_mhz() {
+fn none_is_lost_at_20_mhz(frames: usize) {
     for (rate_error_ppm, jitter) in [(0, 0), (0, 45_000), (30_000, 15_000), (-30_000, 15_000)] {
-        none_is_lost(Conditions {
+        let conditions = Conditions {
             system_mhz: 20,
             rate_error_ppm,
             jitter,
-        });
+        };
+        none_is_lost(conditions, frames);
+    }
+}
+
+#[test]
+fn no_frame_is_lost_at_20_mhz() {
+    none_is_lost_at_20_mhz(FEW);
+}
+
+#[test]
+#[ignore = "slow: a hundred thousand frames"]
+fn no_frame_of_a_hundred_thousand_is_lost_at_20_mhz() {
+    none_is_lost_at_20_mhz(MANY);
+}
+
+fn none_is_lost_at_60_mhz(frames: usize) {
+    for (rate_error_ppm, jitter) in [(0, 0), (0, 75_000), (30_000, 30_000), (-30_000, 30_000)] {
+        let conditions = Conditions {
+            system_mhz: 60,
+            rate_error_ppm,
+            jitter,
+        };
+        none_is_lost(conditions, frames);
     }
 }
 
 #[test]
 fn no_frame_is_lost_at_60_mhz() {
-    for (rate_error_ppm, jitter) in [(0, 0), (0, 75_000), (30_000, 30_000), (-30_000, 30_000)] {
-        none_is_lost(Conditions {
-            system_mhz: 60,
-            rate_error_ppm,
-            jitter,
-        });
-    }
+    none_is_lost_at_60_mhz(FEW);
+}
+
+#[test]
+#[ignore = "slow: a hundred thousand frames"]
+fn no_frame_of_a_hundred_thousand_is_lost_at_60_mhz() {
+    none_is_lost_at_60_mhz(MANY);
 }
 
 /// Replies whose first four cells are not 0, 0, 1, 0, and noise.
-fn none_is_made_up(system_mhz: u64) {
+fn none_is_made_up(system_mhz: u64, frames: usize) {
     let conditions = Conditions {
         system_mhz,
         rate_error_ppm: 0,
@@ -70,7 +94,7 @@ fn none_is_made_up(system_mhz: u64) {
     };
     let mut many = Many::new(conditions, 6);
     let mut frame = 0;
-    while frame < FRAMES {
+    while frame < frames {
         let said = many.exchange(|_, rng| {
             let bytes = kind_reply(rng);
             let mut levels = levels(&bytes);
@@ -105,10 +129,17 @@ fn none_is_made_up(system_mhz: u64) {
 
 #[test]
 fn no_frame_is_made_up_at_20_mhz() {
-    none_is_made_up(20);
+    none_is_made_up(20, FEW);
 }
 
 #[test]
 fn no_frame_is_made_up_at_60_mhz() {
-    none_is_made_up(60);
+    none_is_made_up(60, FEW);
+}
+
+#[test]
+#[ignore = "slow: a hundred thousand frames"]
+fn no_frame_of_a_hundred_thousand_is_made_up() {
+    none_is_made_up(20, MANY);
+    none_is_made_up(60, MANY);
 }
