@@ -1,6 +1,6 @@
 //! Commands of the documentation: each is one, and those that take seconds do what the page says.
 
-use crate::hosts::quick_service_file;
+use crate::hosts::quicker_service_file;
 use crate::program::Dir;
 use crate::tools;
 use std::collections::BTreeSet;
@@ -283,12 +283,29 @@ enum Of {
     Quick,
 }
 
+impl Of {
+    /// Sample sets that are logged instead of those on the page.
+    fn count(self) -> usize {
+        match self {
+            Self::Page => 500,
+            Self::Quick => 100,
+        }
+    }
+
+    /// A text with that number in an option of `log`.
+    fn samples(self, text: &str, printed: &str) -> String {
+        assert!(text.contains(printed), "{printed}");
+        let end = if printed.ends_with(' ') { " " } else { "" };
+        text.replace(printed, &format!("--samples {}{end}", self.count()))
+    }
+}
+
 /// Does in a folder what a page says, in its order; its card comes first, at a separate port. Gives the folder, and the output.
 fn follow(page: &str, port: u16, of: Of, edit: impl Fn(&str) -> String) -> (Dir, String) {
     let mut text = edit(&fs::read_to_string(root().join(page)).unwrap());
     let folder = Dir::new(&format!("follow-{port}"));
     if of == Of::Quick {
-        let quick = fs::read(quick_service_file()).unwrap();
+        let quick = fs::read(quicker_service_file()).unwrap();
         folder.write("quick.toml", &quick);
         for usual in [" card --preset s6_two_channel_service --tcp", " card --tcp"] {
             text = text.replace(usual, " card --config quick.toml --tcp");
@@ -325,10 +342,12 @@ fn readme(of: Of, port: u16) {
     }
     let (folder, told) = follow("README.md", port, of, |text| {
         let journey = text.split("I want to try it without hardware").nth(1);
-        // Of its second a twentieth.
-        journey.unwrap().replace("--samples 10000", "--samples 500")
+        of.samples(journey.unwrap(), "--samples 10000")
     });
-    assert!(told.contains("500 sample sets"), "{told}");
+    assert!(
+        told.contains(&format!("{} sample sets", of.count())),
+        "{told}"
+    );
     assert!(folder.0.join("angles.svg").exists(), "{told}");
 }
 
@@ -371,10 +390,10 @@ fn host_page(of: Of, port: u16) {
         return;
     }
     let (folder, told) = follow("docs/host.md", port, of, |text| {
-        text.replace("--samples 10000", "--samples 500")
+        of.samples(text, "--samples 10000")
     });
     let rows = fs::read_to_string(folder.0.join("angles.csv")).unwrap();
-    assert!(rows.lines().count() > 500, "{told}");
+    assert!(rows.lines().count() > of.count(), "{told}");
 }
 
 /// Catches a page of the host whose first look gives nothing.
@@ -397,6 +416,7 @@ fn tutorial(of: Of, port: u16, seconds: u64) {
     let (folder, told) = follow("docs/tutorial.md", port, of, |text| {
         assert!(text.contains("--samples 36000000") && text.contains("--from 1800 --to 1802"));
         let middle = seconds / 2;
+        let text = of.samples(text, "--samples 500 ");
         text.replace(
             "--samples 36000000",
             &format!("--samples {}", seconds * 10_000),
@@ -406,7 +426,8 @@ fn tutorial(of: Of, port: u16, seconds: u64) {
             &format!("--from {middle} --to {}", middle + 2),
         )
     });
-    for words in ["good", "500 sample sets", "; 0 triggers missing, "] {
+    let count = format!("{} sample sets", of.count());
+    for words in ["good", &count, "; 0 triggers missing, "] {
         assert!(told.contains(words), "{words}\n{told}");
     }
     assert!(told.contains("held: ") || told.contains("none: "), "{told}");

@@ -259,10 +259,20 @@ fn drawings_are_the_program_s(test: &str, drawings: &[(&str, &[&str])]) {
 }
 
 #[test]
+fn the_eye_in_the_page_on_margin_is_the_program_s() {
+    maps_are_the_program_s("pages-eye", &["eye.svg"]);
+}
+
+#[test]
+#[ignore = "slow: maps of cables and of jitter"]
 fn the_maps_in_the_page_on_margin_are_the_program_s() {
+    maps_are_the_program_s("pages-maps", &["shmoo.svg", "jitter.svg"]);
+}
+
+fn maps_are_the_program_s(test: &str, names: &[&str]) {
     let page = include_str!("../docs/margin.md");
-    let folder = tools::folder("pages-maps");
-    for name in ["shmoo.svg", "jitter.svg", "eye.svg"] {
+    let folder = tools::folder(test);
+    for name in names {
         assert!(page.contains(&format!("]({name})](")), "{name}");
         let line = page.lines().find(|l| l.contains(&format!("--svg {name}")));
         let command = line.unwrap().split('`').nth(1).unwrap();

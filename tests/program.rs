@@ -70,6 +70,14 @@ pub fn program() -> Command {
     Command::new(env!("CARGO_BIN_EXE_endat-gen"))
 }
 
+/// Sends a signal by its name to a process. The shell's own command is on every machine, a program of that name is not.
+#[cfg(unix)]
+pub fn signal(process: &Child, name: &str) {
+    let command = format!("kill -{name} {}", process.id());
+    let sent = Command::new("sh").args(["-c", &command]).status();
+    assert!(sent.unwrap().success(), "{command}");
+}
+
 /// The program, left running, and the line that it begins with.
 pub fn begun(command: &mut Command) -> (Child, String) {
     let quiet = command.stdout(Stdio::piped()).stderr(Stdio::null());

@@ -1,6 +1,6 @@
 //! A log whose link is lost and found again: the card has run on, was restarted, or is another one.
 
-use super::{card_of, changed, slow_card, Served};
+use super::{card_of, changed, slow_card, Served, QUICKER};
 #[cfg(unix)]
 use crate::program;
 use crate::tools;
@@ -117,11 +117,7 @@ impl Asleep {
     }
 
     fn signal(&self, name: &str) {
-        let id = self.0.id().to_string();
-        let sent = std::process::Command::new("kill")
-            .args([name, &id])
-            .status();
-        assert!(sent.unwrap().success());
+        program::signal(&self.0, name);
     }
 }
 
@@ -156,12 +152,12 @@ fn a_card_that_slept_is_heard_as_soon_as_it_wakes() {
     };
     for sleep in [Duration::from_millis(1_600), Duration::from_millis(3_900)] {
         listen(&mut |rows| rows > 5_000);
-        asleep.signal("-STOP");
+        asleep.signal("STOP");
         let begin = Instant::now();
         thread::scope(|scope| {
             scope.spawn(|| {
                 thread::sleep(sleep);
-                asleep.signal("-CONT");
+                asleep.signal("CONT");
             });
             // A single call that waits too long or throws rows away counts, too.
             let (took, missing) = listen(&mut |rows| begin.elapsed() > sleep && rows > 10_000);
@@ -252,7 +248,7 @@ fn a_log_ends_with_its_card_and_invents_nothing() {
     let other = || {
         changed(
             "s6_two_channel",
-            &[("sample_hz = 10_000", "sample_hz = 900")],
+            &[&QUICKER[..5], &[("sample_hz = 10_000", "sample_hz = 900")]].concat(),
         )
     };
     for (name, again, more, told) in [

@@ -84,12 +84,16 @@ pub fn quick_service_file() -> &'static Path {
     &FILE
 }
 
-/// The port of a card with a service that is initialised soonest.
+/// The card with a service that is initialised soonest, as a file.
+pub fn quicker_service_file() -> &'static Path {
+    static FILE: LazyLock<PathBuf> = LazyLock::new(|| service_file("quicker_service", &QUICKER));
+    &FILE
+}
+
+/// Its port.
 pub fn quicker_service_port() -> &'static str {
-    static PORT: LazyLock<String> = LazyLock::new(|| {
-        let file = service_file("quicker_service", &QUICKER);
-        format!("virtual:{}", file.display())
-    });
+    static PORT: LazyLock<String> =
+        LazyLock::new(|| format!("virtual:{}", quicker_service_file().display()));
     &PORT
 }
 

@@ -1,7 +1,7 @@
 //! The program at a terminal: the screen of `monitor`, the bar of `log`, colours.
 
 use super::{quicker_service_port, slow_card, Served};
-use crate::program::{program, Dir};
+use crate::program::{program, signal, Dir};
 use endat_gen::virtual_card::Door;
 use serialport::{SerialPort, TTYPort};
 use std::fs::File;
@@ -127,9 +127,7 @@ fn the_screen_of_monitor_hears_keys_and_gives_the_terminal_back() {
         assert_eq!(has_colour(&seen), environment[0].1.is_empty(), "{seen:?}");
         terminal.press(end);
         if end.is_empty() {
-            let process = terminal.child.id().to_string();
-            let killed = Command::new("kill").args(["-TERM", &process]).status();
-            assert!(killed.unwrap().success());
+            signal(&terminal.child, "TERM");
         }
         let (seen, code) = terminal.end();
         assert_eq!(code, Some(0), "{end:?}: {seen:?}");

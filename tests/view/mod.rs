@@ -287,12 +287,7 @@ fn ctrl_c_ends_the_page_with_a_whole_recording() {
     view.until("rows in the file", |now| {
         now["recording"]["rows"].as_u64() > Some(50)
     });
-    let id = view.program.id().to_string();
-    assert!(Command::new("kill")
-        .args(["-INT", &id])
-        .status()
-        .unwrap()
-        .success());
+    program::signal(&view.program, "INT");
     assert_eq!(view.program.wait().unwrap().code(), Some(0));
     assert!(recorded(&view).len() > 50);
 }
@@ -353,7 +348,11 @@ fn others_are_refused_and_nonsense_ends_in_an_error() {
 /// What listens for others needs the token that is printed; without it nothing is told.
 #[test]
 fn a_page_that_others_may_open_has_a_token() {
-    let view = View::new("view-token", quick_service_port(), &["--listen", "0.0.0.0:0"]);
+    let view = View::new(
+        "view-token",
+        quick_service_port(),
+        &["--listen", "0.0.0.0:0"],
+    );
     let token = view.token();
     assert_eq!(token.len(), 32, "{token}");
     let ask =
