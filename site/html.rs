@@ -1,6 +1,6 @@
 //! Sources of the site on disk, and its HTML.
 
-use crate::{pages, Complaints};
+use crate::{pages, Complaints, Page};
 use endat_gen::tools;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,17 +25,32 @@ fn told(path: &Path) -> impl Fn(std::io::Error) -> Complaints + '_ {
 
 /// Builds the site below `out`, and returns where its first page is.
 pub fn build(repository: &Path, out: &Path) -> Result<PathBuf, Complaints> {
-    let pages = pages(repository)?;
-    let settings = out.join("book.toml");
+    check_folder(out)?;
+    build_of(&pages(repository)?, repository, out)
+}
+
+/// Refuses a folder that has files of others.
+fn check_folder(out: &Path) -> Result<(), Complaints> {
     let mark = SETTINGS.lines().next().unwrap_or_default();
-    let is_ours = fs::read_to_string(&settings).is_ok_and(|text| text.starts_with(mark));
+    let settings = fs::read_to_string(out.join("book.toml"));
+    let is_ours = settings.is_ok_and(|text| text.starts_with(mark));
     let is_empty = !out.exists() || fs::read_dir(out).is_ok_and(|mut all| all.next().is_none());
-    if !is_ours && !is_empty {
-        return Err(vec![format!(
+    match is_ours || is_empty {
+        true => Ok(()),
+        false => Err(vec![format!(
             "--out = {}: has files that are not the site's; give an empty folder, or one that is not there yet",
             out.display()
-        )]);
+        )]),
     }
+}
+
+/// Builds a site of these pages, with the pictures of the repository.
+pub(crate) fn build_of(
+    pages: &[Page],
+    repository: &Path,
+    out: &Path,
+) -> Result<PathBuf, Complaints> {
+    let settings = out.join("book.toml");
     let sources = out.join("sources");
     // A page that is no more must not stay.
     if sources.exists() {
@@ -43,7 +58,7 @@ pub fn build(repository: &Path, out: &Path) -> Result<PathBuf, Complaints> {
     }
     fs::create_dir_all(out).map_err(told(out))?;
     fs::write(&settings, SETTINGS).map_err(told(&settings))?;
-    for page in &pages {
+    for page in pages {
         let path = sources.join(&page.path);
         let folder = path.parent().unwrap_or(out);
         fs::create_dir_all(folder).map_err(told(folder))?;

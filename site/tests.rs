@@ -1,12 +1,20 @@
+use crate::html::build_of;
 use crate::links::settled;
 use crate::outline::{BLOCKS, HOMES};
-use crate::{build, dead_links, names, pages};
+use crate::{build, dead_links, names, pages, Page};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::LazyLock;
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The pages of the site: two tests read them, and they take seconds.
+fn made_pages() -> &'static [Page] {
+    static MADE: LazyLock<Vec<Page>> = LazyLock::new(|| pages(&repository()).unwrap());
+    &MADE
 }
 
 /// Whether mdBook is there; where all tools are required, it has to be.
@@ -33,7 +41,7 @@ fn links_are_those_of_the_site() {
             "[a](../ARCHITECTURE.md#the-core)",
             "[a](architecture.md#the-core)",
         ),
-        ("[a `b`](../tests/main.rs) c", "a `b` c"),
+        ("[a `b`](../sim/lib.rs) c", "a `b` c"),
         (
             "`[a](nowhere.md)` ``[`](x)``",
             "`[a](nowhere.md)` ``[`](x)``",
@@ -92,7 +100,7 @@ fn every_page_is_in_the_outline_once() {
 /// Catches a block without purpose, ports that say nothing, and a drawing that has become running text.
 #[test]
 fn every_block_has_a_page_that_says_what_it_is_for() {
-    let pages = pages(&repository()).unwrap();
+    let pages = made_pages();
     let blocks: Vec<_> = pages
         .iter()
         .filter(|page| page.path.starts_with("blocks/"))
@@ -158,7 +166,7 @@ fn every_link_of_the_site_leads_somewhere() {
         return;
     }
     let out = tempfile::tempdir().unwrap();
-    let first = build(&repository(), out.path()).unwrap();
+    let first = build_of(made_pages(), &repository(), out.path()).unwrap();
     let site = first.parent().unwrap().canonicalize().unwrap();
     assert_eq!(dead_links(&site).unwrap(), Vec::<String>::new());
     // It is no check that finds nothing ever.
