@@ -20,26 +20,27 @@ pub struct Host {
     pub bench: Bench<Compiled>,
 }
 
-/// The card of a preset for a system clock of 100 MHz, at this clock (a multiple of 25 MHz), with a quick UART and without its board.
-pub fn card(name: &str, system_mhz: u64) -> CardConfig {
-    card_with(name, system_mhz, str::to_owned)
+/// The card of a preset for a system clock of 100 MHz, at this clock, with a quick UART and without its board.
+pub fn card(name: &str, system_khz: u64) -> CardConfig {
+    card_with(name, system_khz, str::to_owned)
 }
 
 /// The same with a change of its configuration.
-pub fn card_with(name: &str, system_mhz: u64, change: impl Fn(&str) -> String) -> CardConfig {
-    let mut config = project(name, system_mhz, change).card;
+pub fn card_with(name: &str, system_khz: u64, change: impl Fn(&str) -> String) -> CardConfig {
+    let mut config = project(name, system_khz, change).card;
     config.uart_bit_cycles = BIT;
     config
 }
 
-/// The same as a project, with a UART of 3.125 MHz.
-pub fn project(name: &str, system_mhz: u64, change: impl Fn(&str) -> String) -> Project {
+/// The same as a project.
+pub fn project(name: &str, system_khz: u64, change: impl Fn(&str) -> String) -> Project {
     let text = preset(name).unwrap().split("\n[board]").next().unwrap();
     let mut text = text.to_owned();
-    let system = format!("system_hz = {}", system_mhz * 1_000_000);
+    let system = format!("system_hz = {}", system_khz * 1_000);
+    let baud = format!("baud = {}", system_khz * 1_000 / BIT);
     for (from, to) in [
         ("system_hz = 100_000_000", system.as_str()),
-        ("baud = 3_000_000", "baud = 3_125_000"),
+        ("baud = 3_000_000", baud.as_str()),
     ] {
         assert!(text.contains(from), "{name}: {from}");
         text = text.replacen(from, to, 1);

@@ -279,8 +279,8 @@ fn presets_run_without_a_fault_at_a_corner_of_their_encoders() {
 #[test]
 fn a_preset_that_initialises_runs_without_a_fault_at_a_corner_of_its_encoders() {
     let name = "s6_two_channel_service";
-    let project = crate::host::project(name, 25, str::to_owned);
-    project_runs_without_a_fault(name, &project, &[1], 10);
+    let project = crate::host::project(name, 25_000, str::to_owned);
+    project_runs_without_a_fault(name, &project, &[1], 5);
 }
 
 /// Each limit is at either end twice, or more often.

@@ -3,7 +3,7 @@
 use endat_hdl::endat::line_delay::mode;
 use endat_hdl::{
     card::service_times,
-    config::LineParts,
+    config::{CardConfig, LineParts},
     regs::{BLOCKS, LINE, RESULT},
 };
 use endat_sim::{
@@ -19,11 +19,22 @@ struct Host(crate::host::Host);
 impl Host {
     /// A card at 100 MHz with a sound line on channel 0, and one with jitter on channel 1.
     fn new(jitter_ns: u64, drift: i64) -> Self {
-        Self::at(100, jitter_ns, drift)
+        Self::of(
+            crate::host::card("s6_two_channel", 100_000),
+            jitter_ns,
+            drift,
+        )
     }
 
-    fn at(system_mhz: u64, jitter_ns: u64, drift: i64) -> Self {
-        let mut config = crate::host::card("s6_two_channel", system_mhz);
+    /// A card at 25 MHz with a bit of 16 cycles and sound lines.
+    fn slow() -> Self {
+        let config = crate::host::card_with("s6_two_channel", 25_000, |text| {
+            text.replacen("clock_hz = 3_125_000", "clock_hz = 1_562_500", 1)
+        });
+        Self::of(config, 0, 0)
+    }
+
+    fn of(mut config: CardConfig, jitter_ns: u64, drift: i64) -> Self {
         config.line = LineParts {
             alignment: true,
             margin: true,
@@ -134,7 +145,7 @@ fn drift_and_jitter_give_alarm_beyond_their_limits() {
 #[test]
 fn the_host_chooses_where_the_phase_comes_from() {
     // Aborted frames cost tens of milliseconds.
-    let mut host = Host::at(50, 0, 0);
+    let mut host = Host::slow();
     host.0.bench.run_for(3 * MS);
     let tracked = host.field("phase", "tracked", 0);
     let modes = [

@@ -293,7 +293,7 @@ fn has_front(bus: &HostBus) -> bool {
 /// Its address phase overlaps the data phase, as on no other bus.
 #[test]
 fn the_ahb_lite_front_agrees() {
-    agrees(HostBus::AhbLite, 400, 5);
+    agrees(HostBus::AhbLite, 200, 5);
 }
 
 #[test]

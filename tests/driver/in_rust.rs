@@ -371,9 +371,10 @@ fn short(bus: HostBus) {
     }
 }
 
+/// The tests of other protocols have the UART.
 #[test]
-fn position_parameter_and_plug_work_over_a_uart() {
-    short(HostBus::Uart);
+fn position_parameter_and_plug_work_over_the_parallel_bus() {
+    short(HostBus::Parallel);
 }
 
 #[test]

@@ -123,7 +123,7 @@ fn compiled() -> Option<&'static Path> {
         let include = format!("-I{}", home().display());
         let own = ["program.c", "alone.c", "t_format.c"]
             .map(|name| tests.join(name).display().to_string());
-        let mut arguments: Vec<String> = ["-std=c99", "-Wall", "-Werror", "-O1", "-g", "-o", "run"]
+        let mut arguments: Vec<String> = ["-std=c99", "-Wall", "-Werror", "-O0", "-g", "-o", "run"]
             .map(str::to_owned)
             .to_vec();
         arguments

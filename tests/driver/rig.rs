@@ -53,6 +53,8 @@ fn quick_card(project: &Project) -> Compiled {
         after_pulse_ms: 2,
         reset_ms: 3,
         write_ms: 2,
+        busy_ms: 30,
+        request_ms: 60,
         ..service_times(&project.card)
     };
     made::card_with(project, &times, 100)

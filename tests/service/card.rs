@@ -15,14 +15,24 @@ use endat_sim::{
 };
 
 /// System clock: services wait for milliseconds, which are few cycles.
-const MHZ: u64 = 25;
+const KHZ: u64 = 12_500;
+/// With a slower one the service does not get ready between two triggers of two channels.
+const QUICK_KHZ: u64 = 25_000;
+
+/// The card with service, without a stream and a continuous clock: some of these clocks are too slow for them.
+fn card(system_khz: u64) -> CardConfig {
+    host::card_with("s6_two_channel_service", system_khz, |text| {
+        text.replacen("fifo_bytes = 2_048", "fifo_bytes = 0", 1)
+            .replacen("\"continuous\", ", "", 1)
+    })
+}
 
 /// The service's words behind it.
 struct Host(host::Host);
 
 impl Host {
-    fn new() -> Self {
-        let config = host::card("s6_two_channel_service", MHZ);
+    fn new(system_khz: u64) -> Self {
+        let config = card(system_khz);
         Self::with(&config, &[RCN_8510, ROQ_437])
     }
 
@@ -60,9 +70,13 @@ impl Host {
 /// An encoder that leaves a frame after 2 us of HIGH never answers at 200 kHz, however many frames it gets.
 fn a_faster_calibration_clock_is_needed(frames: usize) {
     for (hz, starts) in [(200_000, false), (400_000, true)] {
-        let config = host::card_with("s6_two_channel", MHZ, |text| {
+        let config = host::card_with("s6_two_channel", KHZ, |text| {
             let key = format!("clock_hz = 3_125_000\ncalibration_hz = {hz}");
-            text.replacen("clock_hz = 3_125_000", &key, 1)
+            text.replacen("clock_hz = 3_125_000", &key, 1).replacen(
+                "fifo_bytes = 2_048",
+                "fifo_bytes = 0",
+                1,
+            )
         });
         let mut encoder = RCN_8510.encoder();
         encoder.max_clock_high = 2 * US;
@@ -92,7 +106,7 @@ fn an_encoder_that_leaves_slow_frames_never_starts_with_a_slow_calibration_clock
 
 #[test]
 fn both_channels_are_initialised_and_take_requests_over_the_host_link() {
-    let mut host = Host::new();
+    let mut host = Host::new(KHZ);
     for (channel, width) in [(0, 29), (1, 37)] {
         host.wait_for("state", channel, |s| s & 1 == 1);
         assert_eq!(host.read("progress", channel), 0);
@@ -127,7 +141,7 @@ fn both_channels_are_initialised_and_take_requests_over_the_host_link() {
 /// The first service has two channels, the second one only one.
 #[test]
 fn a_third_channel_has_a_service_of_its_own() {
-    let mut config = host::card("s6_two_channel_service", MHZ);
+    let mut config = card(KHZ);
     config.channels.push(config.channels[1].clone());
     let mut host = Host::with(&config, &[RCN_8510, ROQ_437, RCN_8510]);
     for (channel, width) in [(2, 29), (1, 37), (0, 29)] {
@@ -159,7 +173,7 @@ fn a_third_channel_has_a_service_of_its_own() {
 /// Two channels that share a service, each with additional data of two codes in turn, a threshold and requests: no end of a frame is missed.
 #[test]
 fn no_frame_is_missed_while_both_channels_are_busy() {
-    let mut host = Host::new();
+    let mut host = Host::new(QUICK_KHZ);
     for channel in [0, 1] {
         host.wait_for("state", channel, |s| s & 1 == 1);
         host.write("list_0", channel, 0x4C);
