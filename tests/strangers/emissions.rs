@@ -1,15 +1,24 @@
 //! Every configuration of the list, in every language and simulator: lint, the emitted bench, and cocotb at the card's own bus.
 
-use super::benches::{has_tools, on_both_cores};
+use super::benches::has_tools;
 use super::configurations::{emission, texts, Emission};
-use crate::passed::Check;
+use super::on_both_cores;
 use crate::tools::{self, run};
 use crate::verilog::write;
-use endat_gen::config::Configuration;
+use endat_gen::config::{Configuration, PRESETS, RECEIVER_PRESETS};
 use endat_gen::readers::{is_bench, Reader, LINTERS};
 use std::path::Path;
 
 const PYTHON: &str = "cocotb at every emission";
+
+/// Every protocol and several buses.
+const QUICK: [&str; 5] = ["demo", "async_dsp", "wishbone", "ssi", "both_protocols"];
+
+/// The emissions whose names are wanted.
+fn wanted(is_wanted: impl Fn(&str) -> bool) -> Vec<(String, String)> {
+    let texts = texts().into_iter();
+    texts.filter(|(name, _)| is_wanted(name)).collect()
+}
 
 /// The emissions, written; `of` gives what is wrong with one.
 fn check(
@@ -19,21 +28,12 @@ fn check(
 ) {
     let said = on_both_cores(texts, |_, (name, text)| {
         let emission = emission(name, text);
-        let check = Check::new(format!("{test} of emission {name}")).files(&emission.files);
-        let check = check
-            .text(text)
-            .source("gen/readers.rs")
-            .source("tests/cocotb");
-        check
-            .source("tests/strangers/emissions.rs")
-            .complaint_unless_passed(|| {
-                let (folder, _) = write(&format!("{test}-{name}"), &emission.files);
-                let wrong = of(&emission, &folder);
-                let _ = std::fs::remove_dir_all(folder);
-                let wrong = wrong.into_iter().map(|text| format!("{name}: {text}"));
-                let wrong: Vec<String> = wrong.collect();
-                (!wrong.is_empty()).then(|| wrong.join("\n"))
-            })
+        let (folder, _) = write(&format!("{test}-{name}"), &emission.files);
+        let wrong = of(&emission, &folder);
+        let _ = std::fs::remove_dir_all(folder);
+        let wrong = wrong.into_iter().map(|text| format!("{name}: {text}"));
+        let wrong: Vec<String> = wrong.collect();
+        (!wrong.is_empty()).then(|| wrong.join("\n"))
     });
     assert!(said.is_empty(), "{}", said.join("\n"));
 }
@@ -89,62 +89,109 @@ fn has_cocotb() -> bool {
 
 /// Catches a word of one language that another one reserves, a width that only one reader minds, and a bench that does not fit its card.
 #[test]
+fn some_emissions_are_clean_in_every_language() {
+    if has_tools() {
+        let texts = wanted(|name| QUICK.contains(&name));
+        assert_eq!(texts.len(), QUICK.len());
+        check("lint", &texts, lints);
+    }
+}
+
+#[test]
+#[ignore = "slow: every emission"]
 fn every_emission_is_clean_in_every_language() {
     if has_tools() {
-        check("lint", &texts(), |emission, folder| {
-            let lint = |reader: Reader| {
-                let said = reader.lint(folder, emission.top(), &emission.files);
-                Some(format!("{reader}: {}", said.unwrap()?))
-            };
-            LINTERS.into_iter().filter_map(lint).collect()
-        });
+        check("lint-all", &texts(), lints);
     }
+}
+
+fn lints(emission: &Emission, folder: &Path) -> Vec<String> {
+    let lint = |reader: Reader| {
+        let said = reader.lint(folder, emission.top(), &emission.files);
+        Some(format!("{reader}: {}", said.unwrap()?))
+    };
+    LINTERS.into_iter().filter_map(lint).collect()
 }
 
 /// Catches an output without a start value, and a front that only masters of this project can read.
 #[test]
+fn cocotb_reads_the_identification_of_some_emissions() {
+    if has_tools() && has_cocotb() {
+        let texts = wanted(|name| ["wishbone", "bare", "fast_receiver"].contains(&name));
+        check("cocotb", &texts, |emission, folder| {
+            cocotb(emission, folder, "-g2012").into_iter().collect()
+        });
+    }
+}
+
+#[test]
+#[ignore = "slow: cocotb at every emission"]
 fn cocotb_reads_the_identification_of_every_emission() {
     if has_tools() && has_cocotb() {
-        let script = include_str!("../cocotb/run.py");
-        let texts: Vec<_> = tools::third(&texts(), script.len()).cloned().collect();
-        check("cocotb", &texts, |emission, folder| {
+        check("cocotb-all", &texts(), |emission, folder| {
             cocotb(emission, folder, "-g2005").into_iter().collect()
         });
     }
 }
 
-/// The full product: every emission in every simulator and language; `cargo test every_emission_runs -- --ignored --nocapture` tells each that
-/// has ended. Where it was stopped, `FIRST_CASE` goes on.
-#[test]
-#[ignore = "every emission in every simulator and language: simulations and builds of an hour and a half"]
-fn every_emission_runs_in_every_language() {
-    if !has_tools() || !has_cocotb() {
+/// Emissions with long benches, which Verilator runs several times as fast as Icarus Verilog.
+const LONG: [&str; 8] = [
+    "s6_two_channel",
+    "s6_two_channel_service",
+    "ti_three_channel",
+    "artinchip_endat_if",
+    "mixed_protocols",
+    "widest",
+    "initialise",
+    "eight_channels",
+];
+
+/// The bench of every emission with one reader: long ones with Verilator, the others with a language of Icarus Verilog in turn. Not each with
+/// each: the readers differ in the language that they take the bench for, and all benches have one text. Every reader lints every emission.
+fn runs(texts: &[(String, String)]) {
+    if !has_tools() {
         return;
     }
-    let texts = texts();
-    let readers = LINTERS.map(Some).into_iter().chain([None]);
-    let cases = texts
-        .iter()
-        .flat_map(|card| readers.clone().map(move |reader| (card, reader)));
-    let cases: Vec<_> = cases.enumerate().collect();
-    let first = std::env::var("FIRST_CASE").map_or(0, |n| n.parse().unwrap());
-    let said = on_both_cores(&cases[first..], |_, (case, ((name, text), reader))| {
+    let said = on_both_cores(texts, |index, (name, text)| {
         let emission = emission(name, text);
-        let (folder, _) = write(&format!("product-{case}"), &emission.files);
-        let wrong = match reader {
-            // A port without a bus has no bench.
-            Some(_) if !emission.files.iter().any(is_bench) => None,
-            Some(reader) => {
-                let (passes, text) = reader.play(&folder, &emission.files).unwrap();
-                (!passes).then(|| format!("{reader}: {text}"))
-            }
-            None => cocotb(&emission, &folder, "-g2012"),
+        // A port without a bus has no bench.
+        if !emission.files.iter().any(is_bench) {
+            return None;
+        }
+        let reader = match LONG.contains(&name.as_str()) {
+            true => Reader::Verilator,
+            false => LINTERS[index % 2],
         };
+        let (folder, _) = write(&format!("product-{name}"), &emission.files);
+        let (passes, text) = reader.play(&folder, &emission.files).unwrap();
         let _ = std::fs::remove_dir_all(folder);
-        let what = reader.map_or("cocotb".into(), |reader| reader.to_string());
-        let became = wrong.as_deref().unwrap_or("passes");
-        eprintln!("case {case} of {}: {name}, {what}: {became}", cases.len());
-        wrong.map(|text| format!("{name}: {text}"))
+        (!passes).then(|| format!("{name}: {reader}: {text}"))
     });
     assert!(said.is_empty(), "{}", said.join("\n"));
+}
+
+#[test]
+#[ignore = "slow: benches of emissions that Verilator runs"]
+fn every_long_bench_runs_with_verilator() {
+    let texts = wanted(|name| LONG.contains(&name));
+    assert_eq!(texts.len(), LONG.len());
+    runs(&texts);
+}
+
+#[test]
+#[ignore = "slow: benches of presets, in both languages in turn"]
+fn every_preset_runs_in_a_language() {
+    runs(&presets(true));
+}
+
+#[test]
+#[ignore = "slow: benches of other emissions, in both languages in turn"]
+fn every_emission_runs_in_a_language() {
+    runs(&presets(false));
+}
+
+/// The emissions without long benches: presets or others.
+fn presets(is_preset: bool) -> Vec<(String, String)> {
+    let presets = PRESETS.iter().chain(RECEIVER_PRESETS);
+    wanted(|name| presets.clone().any(|p| p.0 == name) == is_preset && !LONG.contains(&name))
 }

@@ -108,8 +108,8 @@ fn page() -> String {
         text,
         "\nVersions are those that ran last; others may do as well. Every emission is one of {} configurations: the presets, and cards that \
          have each bus, part and extreme that no preset has: {}.\n\nThis page is written from `tests/strangers/table.toml`: \
-         `UPDATE_EXPECT=1 cargo test --test emission strangers::table`. The benches of all emissions in every language, and at every usual clock behind every \
-         bus, take an hour and a half: `cargo test strangers -- --ignored`.\n",
+         `UPDATE_EXPECT=1 cargo test --test emission strangers::table`. The benches of all emissions, and of cards with every bus and every \
+         usual clock, are slow tests: `cargo test --test emission strangers -- --ignored`.\n",
         names.len(),
         names.join(", ")
     );

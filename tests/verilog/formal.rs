@@ -1,7 +1,7 @@
 //! Formal equivalence: emitted blocks without registers against references written by hand, for all words.
 
+use super::area::subject;
 use crate::tools;
-use endat_gen::area::subjects;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::load_preset;
 use endat_gen::prove::Subject;
@@ -45,9 +45,7 @@ fn published_equations_equal_the_block_for_31_bits() {
     if !tools::require("yosys", "published CRC equations") {
         return;
     }
-    let subjects = subjects().unwrap();
-    let files = subjects.iter().find(|s| s.name == "crc5_fixed_31");
-    let files = files.unwrap().files();
+    let files = subject("crc5_fixed_31").files();
     let wrapper = "module candidate(input [30:0] d, output [4:0] crc); crc5_fixed_31 block(.word(d), .crc(crc)); endmodule";
     let (proved, text) = equal("published", &files, wrapper, PUBLISHED);
     assert!(proved, "{text}");

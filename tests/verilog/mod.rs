@@ -13,10 +13,10 @@ mod t_format_bench;
 mod t_format_mutations;
 pub mod testbench;
 
+pub use crate::emitted::{file_of, has_block, name_of};
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, Project, DEFAULT_PRESET};
-pub use crate::emitted::{file_of, has_block, name_of};
 pub use endat_gen::readers::is_core;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

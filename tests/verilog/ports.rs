@@ -1,6 +1,5 @@
 //! Every port of every block of the emitted Verilog, in every cycle of its bench, against the design. This is what `campaign mutants` counts as `ports`.
 
-use crate::passed::Check;
 use crate::tools;
 use endat_gen::campaign::mutants::recorder::{self, Watched};
 use endat_gen::campaign::mutants::stimulus::CYCLES;
@@ -9,7 +8,7 @@ use rtl_design::elaborate::Design;
 use rtl_design::engine::{Compiled, Engine, Keep, PortId};
 use std::collections::HashMap;
 
-/// Cycles of a block alone in the suite; all of them are minutes.
+/// Cycles of a block alone; the test of every subject has more.
 const QUICK_CYCLES: usize = 24_000;
 
 /// A design that is given one row after the other, and the ports of each module that are watched.
@@ -78,16 +77,6 @@ fn differing(emission: &Emission, recording: &Recording) -> Vec<String> {
     differing.map(|(_, module)| module.name.clone()).collect()
 }
 
-/// What is decided by emission, engine and what is put in.
-fn seen(what: &str, emission: &Emission) -> Check {
-    let check = Check::new(format!("{what} of {}", emission.subject.name));
-    let check = check
-        .files(&emission.subject.files)
-        .text(&emission.bench.text);
-    let check = check.source("design").source("gen/campaign/mutants");
-    check.source("tests/verilog/ports.rs")
-}
-
 fn ports_agree(preset: &str) {
     if !tools::require("verilator", &format!("ports of {preset}")) {
         return;
@@ -100,18 +89,24 @@ fn ports_agree(preset: &str) {
 
 /// Catches an operator that Verilog takes for another one than the design, anywhere in the shipped card, whether or not it reaches a pin.
 #[test]
-#[ignore = "a minute and a half"]
+#[ignore = "slow: every port of the shipped card"]
 fn every_port_of_the_shipped_card_does_what_the_design_does() {
     ports_agree("s6_two_channel");
 }
 
 /// Catches the same in what a bench never comes to.
 #[test]
+fn every_block_of_a_small_card_alone_does_with_random_inputs_what_the_design_does() {
+    if tools::require("verilator", "blocks of a receiver alone") {
+        blocks_agree("async_dsp", 4_000);
+    }
+}
+
+#[test]
+#[ignore = "slow: blocks of the shipped card alone"]
 fn every_block_of_a_card_alone_does_with_random_inputs_what_the_design_does() {
-    let preset = "s6_two_channel";
-    if tools::require("verilator", &format!("blocks of {preset} alone")) {
-        let emission = Emission::named(preset).unwrap();
-        seen("blocks alone", &emission).unless_passed(|| blocks_agree(preset, QUICK_CYCLES));
+    if tools::require("verilator", "blocks of the shipped card alone") {
+        blocks_agree("s6_two_channel", QUICK_CYCLES);
     }
 }
 
@@ -126,15 +121,16 @@ fn blocks_agree(preset: &str, cycles: usize) {
     }
 }
 
-/// One block that is another one is named, with those that stand around it.
+/// One block that is another one is named, with those that hold it.
 #[test]
+#[ignore = "slow: a recording of every port of a receiver"]
 fn every_port_of_a_receiver_does_what_the_design_does_and_another_block_is_named() {
     let preset = "async_dsp";
     if !tools::require("verilator", "ports of a receiver") {
         return;
     }
     let emission = Emission::named(preset).unwrap();
-    seen("ports", &emission).unless_passed(|| every_port_agrees_and_another_is_named(emission));
+    every_port_agrees_and_another_is_named(emission);
 }
 
 fn every_port_agrees_and_another_is_named(mut emission: Emission) {
@@ -154,7 +150,7 @@ fn every_port_agrees_and_another_is_named(mut emission: Emission) {
 
 /// Those whose benches set no register inside the card.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "slow: every port of every subject"]
 fn every_port_of_every_subject_does_what_the_design_does() {
     for preset in subjects() {
         blocks_agree(preset, CYCLES);

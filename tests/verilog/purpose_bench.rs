@@ -2,7 +2,7 @@
 //! requests, continuous clock.
 
 use super::mutations::{mutation, Mutation};
-use super::testbench::{bench_passes, check_mutations};
+use super::testbench::{bench_passes, check_mutations, fit};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, parse};
 use endat_hdl::card::bus::HostBus;
@@ -114,15 +114,28 @@ fn slow(system_hz: &str, more: &str) -> Vec<Artifact> {
     endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap()
 }
 
+/// Needs no outside tool. `bench_of_a_quick_card_passes_and_fails_on_broken_cards` runs the steps of the outputs.
 #[test]
+fn mutations_of_what_systems_are_for_fit() {
+    fit(&card(), BROKEN);
+    fit(&slow("25_000_000", SERVED), BROKEN_SERVICES);
+    fit(&without_initial_values(ASKED), BROKEN_START);
+    fit(&without_initial_values(LISTED), BROKEN_INFOS);
+}
+
+#[test]
+#[ignore = "slow: every mutation of outputs, watchdog and clock rates"]
 fn bench_of_a_card_for_a_control_loop_passes_only_as_it_stands() {
     check_mutations("purpose", &card(), BROKEN);
 }
 
+/// Requests, runs of the continuous clock, a second receiver and forced errors.
+const SERVED: &str = "[service]\nparts = [\"requests\", \"continuous\"]\n[safety]\nparts = [\"second_receiver\", \"error_test\"]\n";
+
 #[test]
+#[ignore = "slow: every mutation of requests and runs"]
 fn bench_of_a_card_with_services_passes_only_as_it_stands() {
-    let more = "[service]\nparts = [\"requests\", \"continuous\"]\n[safety]\nparts = [\"second_receiver\", \"error_test\"]\n";
-    check_mutations("services", &slow("25_000_000", more), BROKEN_SERVICES);
+    check_mutations("services", &slow("25_000_000", SERVED), BROKEN_SERVICES);
 }
 
 /// Shown by additional data.
@@ -169,6 +182,10 @@ const BROKEN_START: &[Mutation] = &[
     ),
 ];
 
+/// Parts of the service: requests and diagnosis, or requests with a list of additional data.
+const ASKED: &str = "\"requests\", \"diagnosis\"";
+const LISTED: &str = "\"requests\"]\ninfos = [0x4C, 0x59";
+
 /// A card with these parts of the service, and without start values.
 fn without_initial_values(parts: &str) -> Vec<Artifact> {
     let more = format!(
@@ -192,16 +209,17 @@ fn without_initial_values(parts: &str) -> Vec<Artifact> {
 
 /// Catches what only start values bring to life, and a bench that does not see it.
 #[test]
+#[ignore = "slow: bench without start values, and its mutations"]
 fn a_card_without_initial_values_comes_to_life_by_its_reset() {
-    let card = without_initial_values("\"requests\", \"diagnosis\"");
+    let card = without_initial_values(ASKED);
     check_mutations("start", &card, BROKEN_START);
 }
 
 /// The same where the bench gives the services another list, and another program.
 #[test]
-#[ignore = "two minutes: --ignored without_initial_values"]
+#[ignore = "slow: services without start values"]
 fn services_without_initial_values_come_to_life_by_their_reset() {
-    let list = without_initial_values("\"requests\"]\ninfos = [0x4C, 0x59");
+    let list = without_initial_values(LISTED);
     check_mutations("start-list", &list, BROKEN_INFOS);
     let initialise = without_initial_values("\"requests\", \"initialise\"");
     bench_passes("start-initialise", &initialise, &[]);
@@ -269,7 +287,11 @@ fn benches_of_the_published_systems_do_what_those_are_for() {
             assert_eq!(bench.text.matches("            check_periods(").count(), 7);
         }
     }
-    // The control loop's runs quickly.
+}
+
+#[test]
+#[ignore = "slow: bench of a preset with slow clock rates"]
+fn bench_of_a_control_loop_passes_at_slow_clock_rates() {
     let files = endat_gen::emit(&load_preset("clb_2mhz").unwrap()).unwrap();
     bench_passes("purpose-clb", &files, &["+slow"]);
 }

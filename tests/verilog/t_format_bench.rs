@@ -2,7 +2,7 @@
 
 use super::quick;
 use super::t_format_mutations::{MIXED_MUTATIONS, T_FORMAT_MUTATIONS};
-use super::testbench::{bench_passes, check_mutations};
+use super::testbench::{bench_passes, check_mutations, check_some, fit};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, parse};
 
@@ -33,6 +33,7 @@ fn passes(name: &str, channels: &[String], more: &str) {
 
 /// As it is emitted: slow link, timer.
 #[test]
+#[ignore = "slow: bench of the preset"]
 fn it_passes_on_the_mixed_preset() {
     let files = endat_gen::emit(&load_preset(PRESET).unwrap()).unwrap();
     bench_passes("mixed-preset", &files, &[]);
@@ -40,6 +41,7 @@ fn it_passes_on_the_mixed_preset() {
 
 /// Every request that a trigger may send, both rates, every order of the channels, the shortest and the longest pauses.
 #[test]
+#[ignore = "slow: benches of other cards"]
 fn it_passes_on_other_cards() {
     let endat = || ENDAT.to_owned();
     passes(
@@ -68,6 +70,7 @@ fn it_passes_on_other_cards() {
 
 /// A card that initialises its EnDat encoders has them asleep first, and T-format encoders as well.
 #[test]
+#[ignore = "slow: bench with initialisation"]
 fn it_passes_on_a_card_with_initialisation() {
     let parts =
         "[service]\nparts = [\"requests\", \"diagnosis\", \"continuous\", \"initialise\"]\n";
@@ -76,10 +79,33 @@ fn it_passes_on_a_card_with_initialisation() {
 }
 
 /// One channel alone: the least that has everything, so the quickest to simulate.
+fn alone() -> Vec<Artifact> {
+    card(&[t_format("request = 3")], "")
+}
+
+fn mixed() -> Vec<Artifact> {
+    endat_gen::emit(&quick(load_preset(PRESET).unwrap())).unwrap()
+}
+
 #[test]
+fn it_passes_on_one_channel_and_fails_on_broken_cards() {
+    fit(&mixed(), MIXED_MUTATIONS);
+    let names = [
+        "reply gap too short",
+        "single-turn position MSB first",
+        "a bad reply replaces the position",
+    ];
+    check_some("t-format-quick", &alone(), T_FORMAT_MUTATIONS, &names);
+}
+
+#[test]
+#[ignore = "slow: every mutation of a T-format channel"]
 fn it_fails_on_every_broken_card() {
-    let files = card(&[t_format("request = 3")], "");
-    check_mutations("t-format-only", &files, T_FORMAT_MUTATIONS);
-    let files = endat_gen::emit(&quick(load_preset(PRESET).unwrap())).unwrap();
-    check_mutations("mixed", &files, MIXED_MUTATIONS);
+    check_mutations("t-format-only", &alone(), T_FORMAT_MUTATIONS);
+}
+
+#[test]
+#[ignore = "slow: mutations of a card with both protocols"]
+fn it_fails_on_every_broken_card_with_both_protocols() {
+    check_mutations("mixed", &mixed(), MIXED_MUTATIONS);
 }

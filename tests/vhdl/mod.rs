@@ -3,7 +3,7 @@
 mod files;
 mod mutations;
 
-use crate::passed::Check;
+use crate::strangers::on_both_cores;
 use crate::tools;
 use crate::verilog::mutations::Mutation;
 use endat_gen::artifact::Artifact;
@@ -80,41 +80,42 @@ fn bench(folder: &Path, files: &[Artifact], standard: &str) -> (bool, String) {
     ghdl(folder, files, standard, &[&file], &run)
 }
 
-/// What is decided by these files, read as this standard.
-fn seen(what: &str, files: &[Artifact], standard: &str) -> Check {
-    let check = Check::new(format!("VHDL {standard}: {what}")).files(files);
-    check.source("tests/vhdl")
-}
-
 fn assert_passes(test: &str, files: &[Artifact], standard: &str) {
-    seen(&format!("bench of {test}"), files, standard).unless_passed(|| {
-        let folder = write(test, files);
-        let (is_good, text) = bench(&folder, files, standard);
-        // Not a warning of numeric_std stands before it.
-        assert!(
-            is_good && text.trim() == "PASS",
-            "{test} {standard}: {text}"
-        );
-    });
+    let folder = write(test, files);
+    let (is_good, text) = bench(&folder, files, standard);
+    // Without one warning of numeric_std.
+    assert!(
+        is_good && text.trim() == "PASS",
+        "{test} {standard}: {text}"
+    );
 }
 
-/// Not a warning; with the component, and with the bench.
-#[test]
-fn every_preset_is_analysed_and_elaborated_in_both_languages() {
+/// No warning, with the component and with the bench.
+fn is_elaborated(test: &str, name: &str, standards: &[&str]) {
     if !tools::require("ghdl", "VHDL of the presets") {
         return;
     }
+    let files = preset(name);
+    let folder = write(&format!("{test}-{name}"), &files);
+    let (bench, component) = (format!("{name}_tb"), format!("{name}_component.vhd"));
+    let more = [&component[..], &format!("{name}_tb.vhd")];
+    for standard in standards {
+        let (is_good, text) = ghdl(&folder, &files, standard, &more, &[&bench, "--no-run"]);
+        assert!(is_good && text.is_empty(), "{name} {standard}: {text}");
+    }
+}
+
+#[test]
+fn presets_are_analysed_and_elaborated_in_a_language() {
+    is_elaborated("elaborated", "ssi_two_channel", &STANDARDS[..1]);
+    is_elaborated("elaborated", "clb_2mhz", &STANDARDS[1..]);
+}
+
+#[test]
+#[ignore = "slow: every preset"]
+fn every_preset_is_analysed_and_elaborated_in_both_languages() {
     for name in presets() {
-        let files = preset(name);
-        let folder = write(&format!("elaborated-{name}"), &files);
-        let (bench, component) = (format!("{name}_tb"), format!("{name}_component.vhd"));
-        let more = [&component[..], &format!("{name}_tb.vhd")];
-        for standard in STANDARDS {
-            seen(name, &files, standard).unless_passed(|| {
-                let (is_good, text) = ghdl(&folder, &files, standard, &more, &[&bench, "--no-run"]);
-                assert!(is_good && text.is_empty(), "{name} {standard}: {text}");
-            });
-        }
+        is_elaborated("all-elaborated", name, &STANDARDS);
     }
 }
 
@@ -122,28 +123,28 @@ fn every_preset_is_analysed_and_elaborated_in_both_languages() {
 fn benches_of_quick_presets_pass() {
     if tools::require("ghdl", "VHDL benches") {
         assert_passes("async_dsp-93", &preset("async_dsp"), STANDARDS[0]);
-        assert_passes("async_dsp-08", &preset("async_dsp"), STANDARDS[1]);
-        assert_passes("s6_two_channel", &preset("s6_two_channel"), STANDARDS[1]);
     }
 }
 
 #[test]
-#[ignore = "two minutes: every preset's bench in both languages"]
+#[ignore = "slow: every preset's bench"]
 fn every_bench_passes_in_both_languages() {
     if !tools::require("ghdl", "VHDL benches") {
         return;
     }
-    for name in presets() {
+    let names: Vec<&str> = presets().collect();
+    on_both_cores(&names, |_, name| {
         let files = preset(name);
         for standard in STANDARDS {
             assert_passes(&format!("all-{name}"), &files, standard);
         }
-    }
+        None
+    });
 }
 
-/// Presets have a UART, APB and AXI4-Lite; here are the other buses, and registers without start values.
+/// Presets have a UART, APB and AXI4-Lite. These cards have the other buses, and registers without start values.
 #[test]
-#[ignore = "half a minute: benches of cards on other buses, and of those without start values"]
+#[ignore = "slow: benches of cards on other buses and without start values"]
 fn benches_of_other_cards_pass() {
     if !tools::require("ghdl", "VHDL benches") {
         return;
@@ -170,16 +171,14 @@ fn benches_of_other_cards_pass() {
     }
 }
 
-/// A synthesis finds neither a latch nor anything that is no hardware.
+/// A synthesis finds neither a latch nor a text that is no hardware.
 #[test]
 fn ghdl_makes_netlists_of_the_presets() {
     if !tools::require("ghdl", "netlists of the VHDL") {
         return;
     }
     for name in ["s6_two_channel_service", "clb_2mhz", "async_dsp"] {
-        let files = preset(name);
-        seen(&format!("netlist of {name}"), &files, "--std=08")
-            .unless_passed(|| makes_a_netlist(name, &files));
+        makes_a_netlist(name, &preset(name));
     }
 }
 
@@ -202,22 +201,32 @@ fn assert_top(test: &str, configuration: &Configuration, standard: &str) {
     let (name, _) = listed(&files);
     let folder = write(&format!("top-{test}"), &files);
     let (top, file) = (format!("{name}_top"), format!("{name}_top.vhd"));
-    seen(&format!("top for {test}"), &files, standard).unless_passed(|| {
-        let (is_good, text) = ghdl(&folder, &files, standard, &[&file], &[&top, "--no-run"]);
-        assert!(is_good && text.is_empty(), "{test}: {text}");
-    });
+    let (is_good, text) = ghdl(&folder, &files, standard, &[&file], &[&top, "--no-run"]);
+    assert!(is_good && text.is_empty(), "{test}: {text}");
+}
+
+fn board_top(name: &str, standard: &str) {
+    let board = Board::named(name).unwrap();
+    let text = config::preset_for("--preset", config::DEFAULT_PRESET, &board).unwrap();
+    let card = config::parse_any_on("card.toml", &text, Some(&board)).unwrap();
+    assert_top(name, &card, standard);
 }
 
 #[test]
+fn the_top_of_a_board_is_elaborated() {
+    if tools::require("ghdl", "board tops in VHDL") {
+        board_top("ulx3s", STANDARDS[0]);
+    }
+}
+
+#[test]
+#[ignore = "slow: every board"]
 fn board_tops_are_elaborated() {
     if !tools::require("ghdl", "board tops in VHDL") {
         return;
     }
     for (index, name) in board::names().into_iter().enumerate() {
-        let board = Board::named(name).unwrap();
-        let text = config::preset_for("--preset", config::DEFAULT_PRESET, &board).unwrap();
-        let card = config::parse_any_on("card.toml", &text, Some(&board)).unwrap();
-        assert_top(name, &card, STANDARDS[index % 2]);
+        board_top(name, STANDARDS[index % 2]);
     }
     for (bus, standard) in ["spi", "parallel"].into_iter().zip(STANDARDS) {
         let more = format!("bus = \"{bus}\"\n[board]\nname = \"papilio_pro\"\n");
@@ -302,32 +311,39 @@ fn mutant(files: &[Artifact], mutation: &Mutation) -> Result<Vec<Artifact>, Stri
     Ok(files)
 }
 
-#[test]
-fn the_bench_fails_on_twenty_broken_cards() {
-    if !tools::require("ghdl", "mutations of the emitted VHDL") {
-        return;
-    }
-    assert!(MUTATIONS.len() >= 20);
-    let card =
-        config::parse_any_on("quick.toml", &format!("{QUICK_BEGINS}{QUICK_ENDS}"), None).unwrap();
-    let files = emission(&card);
-    assert_passes("whole", &files, STANDARDS[0]);
-    let check = seen("a card and with mutations", &files, STANDARDS[0]);
-    check
-        .text(&format!("{MUTATIONS:?}"))
-        .unless_passed(|| fails_on_broken(&files));
+fn quick() -> Vec<Artifact> {
+    let text = format!("{QUICK_BEGINS}{QUICK_ENDS}");
+    emission(&config::parse_any_on("quick.toml", &text, None).unwrap())
 }
 
-fn fails_on_broken(files: &[Artifact]) {
-    let mut survivors = vec![];
-    for (index, mutation) in MUTATIONS.iter().enumerate() {
-        let broken = mutant(files, mutation).unwrap();
-        let folder = write("mutant", &broken);
-        let (is_good, text) = bench(&folder, &broken, STANDARDS[index % 2]);
-        // It is the bench that has to see it, no compiler.
-        if is_good || !text.contains("FAIL: cycle") {
-            survivors.push((mutation.name, text));
-        }
+#[test]
+fn the_bench_passes_on_a_quick_card_and_fails_on_broken_ones() {
+    assert!(MUTATIONS.len() >= 20);
+    let files = quick();
+    for mutation in MUTATIONS {
+        mutant(&files, mutation).unwrap();
     }
+    if tools::require("ghdl", "mutations of the emitted VHDL") {
+        assert_passes("whole", &files, STANDARDS[0]);
+        fails_on_broken("mutant", &files, &MUTATIONS[..3]);
+    }
+}
+
+#[test]
+#[ignore = "slow: every mutation"]
+fn the_bench_fails_on_twenty_broken_cards() {
+    if tools::require("ghdl", "mutations of the emitted VHDL") {
+        fails_on_broken("all-mutant", &quick(), MUTATIONS);
+    }
+}
+
+fn fails_on_broken(test: &str, files: &[Artifact], mutations: &[Mutation]) {
+    let survivors = on_both_cores(mutations, |index, mutation| {
+        let broken = mutant(files, mutation).unwrap();
+        let folder = write(&format!("{test}{index}"), &broken);
+        let (is_good, text) = bench(&folder, &broken, STANDARDS[index % 2]);
+        // The bench has to see it, not a compiler.
+        (is_good || !text.contains("FAIL: cycle")).then(|| format!("{}: {text}", mutation.name))
+    });
     assert!(survivors.is_empty(), "not noticed: {survivors:#?}");
 }
