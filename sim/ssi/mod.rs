@@ -247,7 +247,11 @@ impl Encoder {
     }
 
     fn rise(&mut self, time: Time) {
-        let place = (self.rises % self.word.len().max(1) as u64) as usize;
+        // CLOCK was LOW for longer than tm: the frame is over, and the edge brings no bit.
+        if self.word.is_empty() {
+            return;
+        }
+        let place = (self.rises % self.word.len() as u64) as usize;
         self.rises += 1;
         let mut level = self.word.get(place).copied().unwrap_or(false);
         if let Defect::Flip { copy, bit } = self.config.defect {
