@@ -6,7 +6,7 @@ mod golden;
 mod plain;
 
 pub use golden::{assert_committed, difference, renewing};
-pub use plain::{cannot, folder, has, is_whole, run, skip, third};
+pub use plain::{cannot, folder, has, run, skip};
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;

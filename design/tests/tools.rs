@@ -236,13 +236,3 @@ fn run_once(tool: &str, folder: &Path, arguments: &[&str]) -> (bool, String) {
     text.push_str(&String::from_utf8_lossy(&output.stderr));
     (output.status.success(), text)
 }
-
-pub fn is_whole() -> bool {
-    false
-}
-
-pub fn third<T>(all: &[T], turn: usize) -> impl Iterator<Item = &T> {
-    let of = 3;
-    let first = turn % of.min(all.len().max(1));
-    all.iter().skip(first).step_by(of)
-}
