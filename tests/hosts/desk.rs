@@ -19,6 +19,9 @@ impl Desk {
         let mut card = Card::find(Bridge::new(card)).unwrap();
         let channels = project.card.channels.len();
         if project.card.service.initialise {
+            // `initialising` is 0 until the service has begun, some microseconds after power-up.
+            let begun = project.card.system_hz / 10_000;
+            card.bridge().transport().run(begun);
             for channel in 0..channels {
                 card.wait_for_initialisation(channel).unwrap();
             }

@@ -187,7 +187,8 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
     let output = program().args(log).output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(!told.contains('\x1b') && !told.contains('['), "{told}");
-    assert!(told.starts_with("100 of 300 sample sets"), "{told}");
+    let is_line = |line: &str| line.starts_with("30 of 300 sample sets");
+    assert!(told.lines().any(is_line), "{told}");
 }
 
 /// Catches colour in a file, and where nobody wants it.

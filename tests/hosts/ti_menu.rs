@@ -75,7 +75,7 @@ fn every_function_works(project: &Project, times: Times) {
     // Initialise, identify.
     for (channel, bits, endat22) in [(0, 25, true), (1, 37, true), (2, 24, false)] {
         let plate = menu.0.card.name_plate(channel).unwrap();
-        assert!(plate.initialised && plate.failed.is_none());
+        assert!(plate.initialised && plate.failed.is_none(), "{plate:?}");
         assert_eq!((plate.position_bits, plate.endat22), (Some(bits), endat22));
     }
 
