@@ -3,6 +3,7 @@
 use super::Kind;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::endat::channel::{Channel, FixedTimes};
+use endat_sim::{Time, US};
 use rtl_design::elaborate::elaborate;
 use rtl_design::engine::Compiled;
 use rtl_design::kernel_engine;
@@ -16,6 +17,8 @@ struct Play {
     position_bits: u32,
     /// Bits of the frame in one bit of a frame that measures the delay.
     calibration_bits: u64,
+    /// Calculation time of the encoder.
+    tcal: Time,
 }
 
 impl Play {
@@ -30,6 +33,7 @@ impl Play {
         let mut case = kind.case(0.1, 2.2, 1, 5);
         case.settings.position_bits = self.position_bits;
         case.encoder.position_bits = self.position_bits;
+        case.encoder.tcal = self.tcal;
         case.settings.majority = majority;
         case.settings.filter_cycles = u64::from(majority);
         let times = FixedTimes {
@@ -85,6 +89,7 @@ fn double_edge_agrees_on_a_line_with_jitter() {
         majority: false,
         position_bits: 3,
         calibration_bits: 10,
+        tcal: US / 2,
     };
     short.agrees();
 }
@@ -98,6 +103,7 @@ fn double_edge_agrees_in_long_frames() {
         majority: false,
         position_bits: 25,
         calibration_bits: 40,
+        tcal: 5 * US,
     };
     long.agrees();
 }
@@ -111,6 +117,7 @@ fn double_edge_agrees_with_a_majority_of_samples() {
         majority: true,
         position_bits: 25,
         calibration_bits: 40,
+        tcal: 5 * US,
     };
     long.agrees();
 }

@@ -80,7 +80,7 @@ impl Make {
     }
 
     fn engine(self) -> Compiled {
-        let fixed = FixedTimes {
+        let mut fixed = FixedTimes {
             abort_us: ABORT_US,
             ..FixedTimes::at(self.system_hz)
         };
@@ -90,6 +90,7 @@ impl Make {
             ..times(self.initialise)
         };
         if self.is_hasty {
+            fixed.parameter_timeout_us = 1_000;
             (times.power_up_ms, times.after_pulse_ms, times.reset_ms) = (1, 1, 1);
             (times.write_ms, times.gap_ms, times.request_ms) = (0, 0, 20);
         }

@@ -137,10 +137,11 @@ fn kernels_engines_and_verilog_agree_on_requests() {
     let short = Life {
         name: "encoder_port",
         system_hz: 10_000_000,
-        endat_hz: 1_250_000,
-        calibration_hz: 625_000,
+        // 6 and 10 cycles.
+        endat_hz: 1_666_667,
+        calibration_hz: 1_000_000,
         first: 120 * US,
-        next: 80 * US,
+        next: 70 * US,
         triggers: 2,
         info: Some(0x4C),
         encoder,
