@@ -266,7 +266,9 @@ fn written(bytes: &[u8]) -> Vec<(u32, u32)> {
                 }
                 at += 6 + 4 * words;
             }
-            // Reads are left out: while one is answered, the bridge hears nothing.
+            // A read of no words has no answer, and the next command follows.
+            2 | 4 if words == 0 => at += 6,
+            // Other reads are left out: while one is answered, the bridge hears nothing.
             2 | 4 => return writes,
             _ => at += 1,
         }
