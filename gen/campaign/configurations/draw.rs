@@ -325,14 +325,14 @@ fn spoilt(rng: &mut Rng, text: &str) -> String {
 mod tests {
     use super::*;
     use crate::config::parse_any;
+    use std::ops::Range;
 
     /// Catches a draw that depends on more than its seed, one that the reader refuses, and a key that is never drawn.
-    #[test]
-    fn draws_are_valid_the_same_again_and_have_every_key() {
+    fn check_draws(seeds: Range<u64>) {
         let (mut keys, mut drawn) = (BTreeSet::new(), BTreeSet::new());
-        for seed in 0..400 {
+        for seed in seeds {
             let text = valid(seed).unwrap();
-            if seed < 20 {
+            if seed.is_multiple_of(20) {
                 assert_eq!(valid(seed).as_ref(), Some(&text));
             }
             if let Err(complaints) = parse_any("drawn.toml", &text) {
@@ -353,11 +353,21 @@ mod tests {
         );
     }
 
-    /// Catches a panic of the reader, and spoilt texts that are all alike to it.
     #[test]
-    fn two_thousand_spoilt_configurations_are_taken_or_refused_in_words() {
+    fn draws_are_valid_the_same_again_and_have_every_key() {
+        check_draws(0..100);
+    }
+
+    #[test]
+    #[ignore = "slow: 1600 drawn configurations"]
+    fn many_draws_are_valid_and_the_same_again() {
+        check_draws(0..1600);
+    }
+
+    /// Catches a panic of the reader, and spoilt texts that are all alike to it. Returns how many were accepted and rejected.
+    fn check_spoilt(seeds: Range<u64>) -> (u32, u32) {
         let (mut taken, mut refused) = (0, 0);
-        for seed in 0..200 {
+        for seed in seeds {
             let text = valid(seed).unwrap();
             for spoiling in 0..10 {
                 let spoilt = mutated(&text, 1_000 * seed + spoiling);
@@ -370,6 +380,22 @@ mod tests {
                 }
             }
         }
+        (taken, refused)
+    }
+
+    #[test]
+    fn spoilt_configurations_are_taken_or_refused_in_words() {
+        let (taken, refused) = check_spoilt(0..40);
+        assert!(
+            taken > 4 && refused > 200,
+            "{taken} taken, {refused} refused"
+        );
+    }
+
+    #[test]
+    #[ignore = "slow: 2000 spoilt configurations"]
+    fn two_thousand_spoilt_configurations_are_taken_or_refused_in_words() {
+        let (taken, refused) = check_spoilt(0..200);
         assert!(
             taken > 20 && refused > 1_000,
             "{taken} taken, {refused} refused"
