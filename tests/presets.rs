@@ -237,11 +237,8 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize, sets: usize) -> Ve
 
 /// A preset is a promise: an encoder within its limits gives positions and nothing else.
 fn runs_without_a_fault(name: &str, corners: &[usize], sets: usize) {
-    project_runs_without_a_fault(name, &load_preset(name).unwrap(), corners, sets);
-}
-
-fn project_runs_without_a_fault(name: &str, project: &Project, corners: &[usize], sets: usize) {
-    let made = pushing(project);
+    let project = load_preset(name).unwrap();
+    let made = pushing(&project);
     for first in corners {
         let wrong = run(&made, *first, sets);
         let corner = Corner::number(*first);
@@ -268,19 +265,11 @@ fn presets(initialise: bool) -> impl Iterator<Item = &'static str> {
     all.filter(move |name| load_preset(name).unwrap().card.service.initialise == initialise)
 }
 
-/// Every protocol once, at one corner or the opposite one.
+/// Every protocol once, at one corner or the opposite one. In `cargo test` cards with a service initialise encoders.
 #[test]
 fn presets_run_without_a_fault_at_a_corner_of_their_encoders() {
     runs_without_a_fault("mixed_protocols", &[0], 20);
     runs_without_a_fault("ssi_two_channel", &[15], 20);
-}
-
-/// At a quarter of its clock: an initialisation takes long.
-#[test]
-fn a_preset_that_initialises_runs_without_a_fault_at_a_corner_of_its_encoders() {
-    let name = "s6_two_channel_service";
-    let project = crate::host::project(name, 25_000, str::to_owned);
-    project_runs_without_a_fault(name, &project, &[1], 5);
 }
 
 /// Each limit is at either end twice, or more often.

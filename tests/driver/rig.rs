@@ -99,7 +99,8 @@ pub struct Rig {
     front: Front,
     /// First digits of the hash of its configuration.
     pub hash: String,
-    kind: &'static str,
+    /// Which hooks the program has: `spi`, `parallel`, `uart` or `words`.
+    pub kind: &'static str,
     /// One of so many frames on SPI has a wrong bit; 0 = none.
     noise: u64,
     rng: Rng,

@@ -114,9 +114,8 @@ fn each_position_of_a_running_clock_has_a_set_with_additional_data() {
     each_position_has_a_set(true);
 }
 
-/// Catches a set that has one clock's position with another's moment or number, and a loss that nobody is told of.
-#[test]
-fn two_running_clocks_and_triggers_share_the_stream() {
+/// Catches a set that has one clock's position with another's moment or number, and a loss that is not reported; in so many milliseconds.
+fn two_running_clocks_share_the_stream(ms: u64) {
     // Both together would fill it two times over.
     let mut desk = desk([25, 35], false);
     for channel in [0, 1] {
@@ -127,7 +126,7 @@ fn two_running_clocks_and_triggers_share_the_stream() {
     desk.set("card.trigger_now", 1);
     desk.set("card_config.trigger_period", 500 * US_CYCLES);
     desk.set("card_config.trigger_sources.timer", 1);
-    let sets = pushed(&mut desk, 40);
+    let sets = pushed(&mut desk, ms);
     let (mut left_out, mut received) = (0, 0);
     for channel in [0, 1] {
         let run = run_of(&sets, channel);
@@ -135,11 +134,11 @@ fn two_running_clocks_and_triggers_share_the_stream() {
         left_out += check(&mut desk, channel, &run);
         received += run.len();
     }
-    assert!(left_out > 100, "{left_out} of {received}");
+    assert!(left_out > 5 * ms / 2, "{left_out} of {received}");
     let lost: u64 = sets.iter().map(|s| u64::from(s.lost)).sum();
     let all = u64::from(desk.reg("card.stream_state.lost"));
     let triggered: Vec<&SampleSet> = sets.iter().filter(|s| s.run.is_none()).collect();
-    assert!(triggered.len() > 60, "{}", triggered.len());
+    assert!(2 * triggered.len() as u64 > 3 * ms, "{}", triggered.len());
     // Sets of triggers are lost, too.
     for pair in triggered.windows(2) {
         left_out += u64::from(pair[1].sequence.wrapping_sub(pair[0].sequence)) - 1;
@@ -156,6 +155,17 @@ fn two_running_clocks_and_triggers_share_the_stream() {
             "{set:?}"
         );
     }
+}
+
+#[test]
+fn two_running_clocks_and_triggers_share_the_stream() {
+    two_running_clocks_share_the_stream(20);
+}
+
+#[test]
+#[ignore = "slow: two running clocks for longer"]
+fn two_running_clocks_and_triggers_share_the_stream_for_long() {
+    two_running_clocks_share_the_stream(40);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A port for T-format at work with its encoder: kernels, engines and emitted Verilog agree in every cycle.
 
 use super::shaft;
-use crate::three_way::{three_way, Recording, Stimulus};
+use crate::three_way::{agree, record, three_way, Stimulus};
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::protocols::t_format::cause;
 use endat_hdl::protocols::t_format::port::word;
@@ -11,7 +11,7 @@ use endat_sim::rng::Rng;
 use endat_sim::t_format::{Defect, EncoderConfig};
 use endat_sim::US;
 use rtl_design::elaborate::elaborate;
-use rtl_design::engine::Compiled;
+use rtl_design::engine::{Compiled, KernelEngine};
 use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 
@@ -101,36 +101,37 @@ fn recorded(system_mhz: u64, rounds: usize) -> Stimulus {
     }
 }
 
-/// The executions agree; the stimulus brings more results than `least`.
-fn executions_agree(name: &str, stimulus: &Stimulus, least: u128) -> Recording {
-    let design = elaborate(&block(), "encoder_port").unwrap();
-    let mut kernel = kernel_engine!(block(); clock;
+fn kernels() -> KernelEngine<EncoderPort> {
+    kernel_engine!(block(); clock;
         in reset, tick_us, timestamp, trigger, calibrate, request_id, field_gap_us;
         out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, displaced, reply, calibrated, alarm;
-        bundles line, settings, window, result, end, record);
-    let seen = three_way(name, &mut kernel, &design, stimulus).unwrap();
-    let results = *seen.output("sequence").last().unwrap();
-    assert!(results > least, "{results}");
-    assert!(seen.output("fresh").contains(&1));
-    assert!(seen.output("endat_clk").iter().all(|c| *c == 1));
-    seen
+        bundles line, settings, window, result, end, record)
 }
 
-/// A good exchange of a trigger, and a request of the host.
 #[test]
-fn kernels_engines_and_verilog_agree_on_exchanges_of_a_t_format_port() {
-    executions_agree("t_format_port", &recorded(20, 3), 1);
+fn kernels_and_native_code_agree_on_exchanges_of_a_t_format_port() {
+    let stimulus = recorded(20, 3);
+    let expected = record(&mut kernels(), &stimulus);
+    let design = elaborate(&block(), "encoder_port").unwrap();
+    let mut compiled = Compiled::new(&design).unwrap();
+    agree("compiled", &expected, &record(&mut compiled, &stimulus)).unwrap();
+    assert!(*expected.output("sequence").last().unwrap() > 1);
+    assert!(expected.output("fresh").contains(&1));
 }
 
 #[test]
 #[ignore = "slow: kernels, engines and simulators on 24 rounds of a T-format port"]
 fn kernels_engines_and_verilog_agree_on_a_t_format_port() {
-    let seen = executions_agree("t_format_port_rounds", &recorded(40, 24), 10);
+    let design = elaborate(&block(), "encoder_port").unwrap();
+    let seen = three_way("t_format_port", &mut kernels(), &design, &recorded(40, 24)).unwrap();
+    assert!(*seen.output("sequence").last().unwrap() > 10);
     // Good and bad, by triggers and by the host.
     let causes = seen.output("cause");
     for cause in [cause::NONE, cause::UNKNOWN_REQUEST].map(u128::from) {
         assert!(causes.contains(&cause), "{cause}");
     }
     assert!(causes.iter().any(|c| *c > cause::UNKNOWN_REQUEST.into()));
+    assert!(seen.output("fresh").contains(&1));
     assert!(seen.output("over_request").contains(&1));
+    assert!(seen.output("endat_clk").iter().all(|c| *c == 1));
 }
