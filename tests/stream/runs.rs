@@ -114,8 +114,9 @@ fn each_position_of_a_running_clock_has_a_set_with_additional_data() {
     each_position_has_a_set(true);
 }
 
-/// Catches a set that has one clock's position with another's moment or number, and a loss that is not reported; in so many milliseconds.
-fn two_running_clocks_share_the_stream(ms: u64) {
+/// Catches a set that has one clock's position with another's moment or number, and a loss that is not reported; in so many
+/// milliseconds with more than `least` sets of triggers.
+fn two_running_clocks_share_the_stream(ms: u64, least: usize) {
     // Both together would fill it two times over.
     let mut desk = desk([25, 35], false);
     for channel in [0, 1] {
@@ -138,7 +139,7 @@ fn two_running_clocks_share_the_stream(ms: u64) {
     let lost: u64 = sets.iter().map(|s| u64::from(s.lost)).sum();
     let all = u64::from(desk.reg("card.stream_state.lost"));
     let triggered: Vec<&SampleSet> = sets.iter().filter(|s| s.run.is_none()).collect();
-    assert!(2 * triggered.len() as u64 > 3 * ms, "{}", triggered.len());
+    assert!(triggered.len() > least, "{}", triggered.len());
     // Sets of triggers are lost, too.
     for pair in triggered.windows(2) {
         left_out += u64::from(pair[1].sequence.wrapping_sub(pair[0].sequence)) - 1;
@@ -159,13 +160,13 @@ fn two_running_clocks_share_the_stream(ms: u64) {
 
 #[test]
 fn two_running_clocks_and_triggers_share_the_stream() {
-    two_running_clocks_share_the_stream(20);
+    two_running_clocks_share_the_stream(20, 25);
 }
 
 #[test]
 #[ignore = "slow: two running clocks for longer"]
 fn two_running_clocks_and_triggers_share_the_stream_for_long() {
-    two_running_clocks_share_the_stream(40);
+    two_running_clocks_share_the_stream(40, 60);
 }
 
 #[test]
