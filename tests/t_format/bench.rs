@@ -53,10 +53,7 @@ const VERDICT: &str = "verdict_bytes";
 
 #[test]
 fn it_passes_on_the_preset_and_fails_on_broken_receivers() {
-    let names = [
-        "data one clock sooner",
-        "CRC of a request wrong",
-    ];
+    let names = ["data one clock sooner", "CRC of a request wrong"];
     check_some("receiver-quick", &emitted(&[]), MUTATIONS, &names);
 }
 
