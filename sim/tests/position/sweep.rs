@@ -21,13 +21,13 @@ fn all_sound(cases: &[Case]) {
     assert_eq!(checked, wanted);
 }
 
-/// 10 rates, 4 cables, 2 commands, the ends of the widths and one between; the first frame measures the delay, the second runs at the
+/// 10 rates, 4 cables, 2 commands, the narrowest and the widest position; the first frame measures the delay, the second runs at the
 /// full clock.
 #[test]
 fn narrow_and_wide_positions_are_sound_at_every_rate_and_cable() {
     let mut cases = campaign::sweep();
-    cases.retain(|case| [1, 29, 48].contains(&case.settings.position_bits));
-    assert_eq!(cases.len(), 10 * 4 * 2 * 3);
+    cases.retain(|case| [1, 48].contains(&case.settings.position_bits));
+    assert_eq!(cases.len(), 10 * 4 * 2 * 2);
     all_sound(&cases);
 }
 
@@ -42,7 +42,7 @@ fn every_width_rate_cable() {
 /// The quick relative of `random::lines_and_encoders_within_their_limits_give_good_frames`, too.
 #[test]
 fn random_lines_and_encoders() {
-    all_sound(&campaign::random(200, 1));
+    all_sound(&campaign::random(120, 1));
 }
 
 #[test]
