@@ -9,5 +9,6 @@ mod t_format;
 mod ghdl;
 #[path = "../../design/tests/three_way.rs"]
 mod three_way;
+#[allow(dead_code)] // other crates take the rest
 #[path = "../../design/tests/tools.rs"]
 mod tools;

@@ -10,5 +10,6 @@ mod service;
 mod ghdl;
 #[path = "../../design/tests/three_way.rs"]
 mod three_way;
+#[allow(dead_code)] // other crates take the rest
 #[path = "../../design/tests/tools.rs"]
 mod tools;
