@@ -9,6 +9,7 @@ use rtl_design::elaborate::elaborate;
 use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::fs;
+use std::sync::OnceLock;
 
 /// The scenario that lasts two seconds.
 const LONG: &str = "initialise";
@@ -150,18 +151,20 @@ fn requests_and_steps_are_in_the_report() {
 /// The report would say so if a request went wrong.
 #[test]
 fn a_request_that_fails_is_complained_about() {
+    let compiled = OnceLock::new();
     let complaints = |defect: Option<Defect>| {
         let mut s = scenario::named("parameter").unwrap();
         let encoder = s.channels[0].encoder.clone();
         if let Some(defect) = defect {
             s.channels[0].encoder = encoder.defect(3, defect);
         }
-        let times = FixedTimes::at(s.system_hz);
-        let mut block = Channel::with(times, s.features());
-        block.connect_all();
-        let design = elaborate(&block, "channel").unwrap();
-        let engine = Compiled::new(&design).unwrap();
-        let report = s.run_channel(0, engine, RunOptions::default()).1;
+        let engine = compiled.get_or_init(|| {
+            let times = FixedTimes::at(s.system_hz);
+            let mut block = Channel::with(times, s.features());
+            block.connect_all();
+            Compiled::new(&elaborate(&block, "channel").unwrap()).unwrap()
+        });
+        let report = s.run_channel(0, engine.clone(), RunOptions::default()).1;
         report.complaints()
     };
     assert_eq!(complaints(None), [""; 0]);

@@ -164,8 +164,16 @@ fn a_card_that_dies_leaves_file_and_plot() {
     let (svg, out) = (folder.join("dies.svg"), folder.join("dies.csv"));
     let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
     let port = card.name.clone();
+    let rows = out.clone();
     let end = std::thread::spawn(move || {
-        std::thread::sleep(std::time::Duration::from_secs(5));
+        // Until some rows are in the file.
+        let lines = || fs::read_to_string(&rows).map_or(0, |text| text.lines().count());
+        for _ in 0..600 {
+            if lines() > 5 {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
         drop(card);
     });
     let outcome = run(&[

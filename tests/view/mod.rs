@@ -13,6 +13,9 @@ use std::process::{Child, Command};
 use std::thread;
 use std::time::{Duration, Instant};
 
+/// A card whose sets are made by arithmetic: for what does not look at positions.
+const LOAD: &str = "load";
+
 /// `view` in a folder of its own.
 struct View {
     program: Child,
@@ -282,7 +285,7 @@ fn a_page_has_what_a_t_format_encoder_tells_of_itself() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_the_page_with_a_whole_recording() {
-    let mut view = View::local("view-ended", quick_service_port());
+    let mut view = View::local("view-ended", LOAD);
     assert_eq!(view.ask("POST", "/api/record").0, 200);
     view.until("rows in the file", |now| {
         now["recording"]["rows"].as_u64() > Some(50)
@@ -294,7 +297,18 @@ fn ctrl_c_ends_the_page_with_a_whole_recording() {
 
 #[test]
 fn others_are_refused_and_nonsense_ends_in_an_error() {
-    let view = View::local("view-refused", quick_service_port());
+    nonsense_ends_in_an_error("view-refused", 300);
+}
+
+#[test]
+#[ignore = "slow: requests of random bytes to the live page"]
+fn much_nonsense_ends_in_an_error() {
+    nonsense_ends_in_an_error("view-much", 1_500);
+}
+
+/// Requests that others make, and so many that are no requests.
+fn nonsense_ends_in_an_error(test: &str, count: u32) {
+    let view = View::local(test, LOAD);
     let host = format!("Host: {}\r\n", view.address);
     let ask = |path: &str, headers: &str| view.with("GET", path, headers).0;
     assert_eq!(ask("/api/now", &host), 200);
@@ -323,7 +337,7 @@ fn others_are_refused_and_nonsense_ends_in_an_error() {
     let mut rng = Rng::new(7);
     let mut below = |end: usize| rng.in_range(0, end as u64 - 1) as usize;
     let good = format!("GET /api/now HTTP/1.1\r\n{host}\r\n");
-    for n in 0..1_500 {
+    for n in 0..count {
         let mut bytes = good.clone().into_bytes();
         match n % 3 {
             // A byte that is another one, a text that ends, nothing but noise.
@@ -348,11 +362,7 @@ fn others_are_refused_and_nonsense_ends_in_an_error() {
 /// What listens for others needs the token that is printed; without it nothing is told.
 #[test]
 fn a_page_that_others_may_open_has_a_token() {
-    let view = View::new(
-        "view-token",
-        quick_service_port(),
-        &["--listen", "0.0.0.0:0"],
-    );
+    let view = View::new("view-token", LOAD, &["--listen", "0.0.0.0:0"]);
     let token = view.token();
     assert_eq!(token.len(), 32, "{token}");
     let ask =
@@ -379,7 +389,7 @@ fn a_page_that_others_may_open_has_a_token() {
 /// Ten pages, and many who do not go on: nobody else waits for them, and the card loses nothing.
 #[test]
 fn slow_clients_harm_nobody() {
-    let view = View::local("view-slow", quick_service_port());
+    let view = View::local("view-slow", LOAD);
     let mut stalled: Vec<TcpStream> = Vec::new();
     for n in 0..40 {
         let mut stream = TcpStream::connect(&view.address).unwrap();
