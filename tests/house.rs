@@ -415,6 +415,39 @@ fn files_and_functions_are_short() {
     assert!(found.is_empty(), "too long: {found:#?}");
 }
 
+/// rustdoc reads the whole crate for a documentation test, so crates that only draw have none.
+#[test]
+fn crates_without_documentation_tests_have_no_runnable_example() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut checked = 0;
+    for source in sources() {
+        let path = root.join(&source.path);
+        let manifests = path.ancestors().map(|folder| folder.join("Cargo.toml"));
+        let manifest = manifests.into_iter().find(|m| m.exists()).unwrap();
+        let manifest = fs::read_to_string(manifest).unwrap();
+        if !manifest.contains("\ndoctest = false") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let comments = text.lines().map(str::trim_start);
+        let fences = comments.filter_map(|line| {
+            let comment = line
+                .strip_prefix("//!")
+                .or_else(|| line.strip_prefix("///"))?;
+            comment.trim_start().strip_prefix("```")
+        });
+        for opening in fences.step_by(2) {
+            checked += 1;
+            assert!(
+                ["text", "ignore", "toml"].contains(&opening),
+                "{}: ```{opening} never runs; make it a unit test",
+                source.path
+            );
+        }
+    }
+    assert!(checked > 60, "only {checked} fences found");
+}
+
 /// Ports of each block of a file.
 #[derive(Default)]
 struct Ports(Vec<(String, usize)>);

@@ -1,6 +1,6 @@
 //! Programs for the [`Sequencer`](super::Sequencer), one method for each instruction.
 //!
-//! ```
+//! ```ignore
 //! use endat_hdl::endat::sequencer::assembler::Assembler;
 //! let mut a = Assembler::new();
 //! let again = a.here();
@@ -295,6 +295,26 @@ impl Assembler {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The example at the top of this file: a documentation test would read the whole crate for it.
+    #[test]
+    fn example_of_the_documentation_assembles() {
+        let example = include_str!("assembler.rs").split("```").nth(1).unwrap();
+        for line in [
+            r#"a.inp(3).jz(again);"#,
+            r#"a.call("count").jmp(again);"#,
+            r#"a.place("count").ld(7).addi(1).st(7).ret();"#,
+            r#"assert_eq!(a.finish().unwrap()[0], 0xb0003);"#,
+        ] {
+            assert!(example.contains(line), "{line}");
+        }
+        let mut a = Assembler::new();
+        let again = a.here();
+        a.inp(3).jz(again);
+        a.call("count").jmp(again);
+        a.place("count").ld(7).addi(1).st(7).ret();
+        assert_eq!(a.finish().unwrap()[0], 0xb0003);
+    }
 
     #[test]
     fn faults_of_a_program_are_told_with_their_place() {
