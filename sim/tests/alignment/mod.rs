@@ -1,4 +1,4 @@
-//! The phase of the samples: how much jitter, drift and noise it stands, with both kinds of input, in all modes.
+//! The phase of the samples: how much jitter, drift and noise it tolerates, with both kinds of input, in all modes.
 
 mod glitches;
 mod recovery;
@@ -146,12 +146,12 @@ pub fn count(case: &Case, traces: &Traces<'_>, first: usize) -> Count {
 /// Runs cases and counts their frames behind the calibration and `warm_up` more.
 pub fn run(cases: &[Case], warm_up: usize) -> Vec<Count> {
     let options = RunOptions {
+        threads: 2,
         samples: false,
         lanes: match cases.len() {
             0..=64 => LaneWords::One,
             _ => LaneWords::Two,
         },
-        ..RunOptions::default()
     };
     let judge =
         |case: &Case, traces: &Traces<'_>| count(case, traces, case.calibration_frames() + warm_up);

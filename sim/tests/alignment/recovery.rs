@@ -38,6 +38,7 @@ fn is_measured(kinds: &[Kind], widths: &[u32]) {
         })
     };
     let options = RunOptions {
+        threads: 2,
         samples: false,
         ..RunOptions::default()
     };

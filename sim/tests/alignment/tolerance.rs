@@ -1,4 +1,4 @@
-//! How much jitter the phase stands: against the ideal `0.5 - 1 / places`.
+//! How much jitter the phase tolerates: against the ideal `0.5 - 1 / places`.
 
 use super::{run, Count, Kind};
 use endat_hdl::endat::line_delay::mode;
@@ -113,7 +113,7 @@ fn tracked_phase_reaches_the_ideal(kinds: &[Kind], frames: (usize, usize)) {
 }
 
 #[test]
-fn tracked_phase_stands_the_jitter_that_an_ideal_receiver_stands() {
+fn tracked_phase_tolerates_the_jitter_of_an_ideal_receiver() {
     let kinds = [Kind::single(8).slower(), Kind::double(2).slower()];
     tracked_phase_reaches_the_ideal(&kinds, (60, 40));
 }
@@ -128,7 +128,7 @@ fn tracked_phase_tolerates_the_ideal_jitter_at_every_oversampling() {
 
 /// With the phase of one jittered edge half of it is left; the model of jitter and the judge can tell the difference.
 #[test]
-fn phase_from_the_start_bit_stands_half_of_that() {
+fn phase_from_the_start_bit_tolerates_half_of_that() {
     let part = reached(Kind::single(8).slower(), mode::FRAME, &[45, 75], (10, 20));
     assert_eq!(part, 0.45);
 }

@@ -4,7 +4,11 @@ use endat_sim::campaign::{self, Case, RunOptions};
 
 /// All cases must be sound; the first few that are not are shown.
 fn all_sound(cases: &[Case]) {
-    let outcomes = campaign::run(cases, RunOptions::default(), Case::check, |_| {}).unwrap();
+    let options = RunOptions {
+        threads: 2,
+        ..RunOptions::default()
+    };
+    let outcomes = campaign::run(cases, options, Case::check, |_| {}).unwrap();
     assert_eq!(outcomes.len(), cases.len());
     let failed = cases.iter().zip(&outcomes);
     let failed = failed.filter_map(|(case, o)| o.verdict.as_ref().err().map(|f| (&case.title, f)));

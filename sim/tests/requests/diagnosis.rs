@@ -90,13 +90,13 @@ fn late_start_bits(step: usize) {
 }
 
 #[test]
-fn a_late_start_bit_is_told_from_a_silent_encoder() {
+fn late_start_bit_has_another_cause_than_silence() {
     late_start_bits(5);
 }
 
 #[test]
 #[ignore = "slow: every microsecond up to three times the limit"]
-fn a_late_start_bit_is_told_from_a_silent_encoder_at_any_delay() {
+fn late_start_bit_at_any_delay_has_another_cause_than_silence() {
     late_start_bits(1);
 }
 

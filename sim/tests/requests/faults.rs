@@ -141,7 +141,7 @@ fn stuck_or_open(step: usize) {
 }
 
 #[test]
-fn a_line_stuck_or_open_from_a_bit_on() {
+fn channel_recovers_from_a_stuck_or_open_line() {
     stuck_or_open(4);
 }
 
@@ -165,7 +165,7 @@ fn lost(step: usize) {
 }
 
 #[test]
-fn an_encoder_lost_in_a_frame() {
+fn channel_recovers_from_a_lost_encoder() {
     lost(SOME);
 }
 
@@ -201,7 +201,7 @@ fn glitches(step: usize) {
 }
 
 #[test]
-fn a_glitch_on_either_wire_in_a_frame() {
+fn channel_recovers_from_a_glitch_on_either_wire() {
     glitches(2 * SOME + 1);
 }
 
@@ -219,7 +219,7 @@ fn missed_or_doubled(step: usize) {
 }
 
 #[test]
-fn some_clock_pulses_that_the_encoder_misses_or_sees_twice() {
+fn channel_recovers_from_missed_and_doubled_clock_pulses() {
     missed_or_doubled(3);
 }
 
@@ -255,7 +255,7 @@ fn wrong_answers(step: usize) {
 }
 
 #[test]
-fn some_answers_of_an_encoder_that_are_wrong() {
+fn channel_recovers_from_wrong_answers() {
     wrong_answers(5);
 }
 
@@ -279,7 +279,7 @@ fn silent_early_or_late(step: usize) {
 }
 
 #[test]
-fn an_encoder_that_is_silent_or_late() {
+fn channel_recovers_from_a_silent_or_late_encoder() {
     silent_early_or_late(5);
 }
 

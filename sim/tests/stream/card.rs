@@ -142,7 +142,7 @@ fn a_host_that_asks_for_too_much_loses_whole_sets() {
 
 #[test]
 #[ignore = "slow: twice as many reads"]
-fn a_host_that_asks_for_too_much_loses_whole_sets_and_is_told() {
+fn a_host_that_asks_for_too_much_loses_whole_sets_and_sees_it() {
     too_much_is_asked(60);
 }
 

@@ -216,7 +216,7 @@ fn a_set_is_the_truth_about_its_trigger() {
 
 #[test]
 #[ignore = "slow: twelve random runs"]
-fn every_set_is_the_truth_about_its_trigger_and_every_trigger_is_told() {
+fn every_set_is_the_truth_about_its_trigger_and_every_trigger_is_reported() {
     sets_are_the_truth(12);
 }
 

@@ -538,12 +538,12 @@ fn an_upset_of_the_receiver_is_masked_or_reported() {
 
 #[test]
 #[ignore = "slow: every flip-flop at 65 moments of every exchange"]
-fn an_upset_of_a_card_s_port_is_masked_or_told_and_drives_and_writes_nothing() {
+fn an_upset_of_a_card_s_port_is_masked_or_reported_and_drives_and_writes_nothing() {
     holds(true, SNAPSHOT, MOMENTS);
 }
 
 #[test]
 #[ignore = "slow: every flip-flop at 65 moments of every exchange"]
-fn an_upset_of_the_receiver_is_masked_or_told_and_drives_and_writes_nothing() {
+fn an_upset_of_the_receiver_is_masked_or_reported_and_drives_and_writes_nothing() {
     holds(false, "none", MOMENTS);
 }
