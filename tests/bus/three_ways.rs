@@ -305,9 +305,10 @@ fn has_front(bus: &HostBus) -> bool {
     }
 }
 
+/// Kernels are slow: a bus whose address and data phases overlap, and a serial one.
 #[test]
-fn native_code_of_every_front_agrees_with_its_kernels() {
-    for bus in HostBus::ALL.into_iter().filter(has_front) {
+fn native_code_of_two_fronts_agrees_with_their_kernels() {
+    for bus in [HostBus::AhbLite, HostBus::Spi] {
         native_code_agrees(bus, 500, 3);
     }
 }

@@ -375,7 +375,7 @@ fn short(bus: HostBus) {
     }
 }
 
-/// In `cargo test` the slow reads have the parallel bus, and other protocols the UART.
+/// In `cargo test` positions come over the parallel bus, and the tests of other protocols have the UART.
 #[test]
 #[ignore = "slow: the Rust driver over every other bus"]
 fn position_parameter_and_plug_over_every_other_bus() {
@@ -425,14 +425,26 @@ fn an_encoder_that_never_answers_is_told_with_its_step() {
 
 #[test]
 fn slow_reads_are_of_one_moment() {
+    words(HostBus::Apb, ALL_PARTS).torn();
+}
+
+fn parallel() -> Bench<Parallel<World>> {
     let world = World::new(Rig::new(HostBus::Parallel, ALL_PARTS));
-    Bench::new(world.clone(), Parallel::new(world)).torn();
+    Bench::new(world.clone(), Parallel::new(world))
 }
 
 #[test]
-#[ignore = "slow: the Rust driver's slow reads over APB"]
-fn slow_reads_over_apb_are_of_one_moment() {
-    words(HostBus::Apb, ALL_PARTS).torn();
+fn positions_come_over_the_parallel_bus() {
+    let mut bench = parallel();
+    bench.wait_for_both();
+    bench.measure_well();
+    bench.world.is_content();
+}
+
+#[test]
+#[ignore = "slow: the Rust driver's slow reads over the parallel bus"]
+fn slow_reads_over_the_parallel_bus_are_of_one_moment() {
+    parallel().torn();
 }
 
 /// Good positions only, while one of some frames is disturbed; then parameters and settings, if asked for.
