@@ -75,3 +75,17 @@ fn what_a_receiver_does_wrong_is_noted() {
     assert_eq!(noted(no_repeat, 18, US), [Violation::NoRepeat]);
     assert_eq!(noted(usual(), 18, US), []);
 }
+
+/// A receiver that waits for HIGH before it clocks would wait for ever otherwise.
+#[test]
+fn data_is_high_after_a_low_phase_that_ended_the_frame() {
+    let mut encoder = encoder(EncoderConfig::default());
+    let tm = encoder.config.tm;
+    encoder.clock(0, false);
+    encoder.clock(tm + US, true);
+    encoder.advance(tm + 100 * US);
+    assert!(encoder.data());
+    assert_eq!(encoder.violations(), [Violation::Clocks(0)]);
+    let bits = clocked(&mut encoder, tm + 200 * US, 9, US);
+    assert_eq!(bits, [true, false, true, true, false, false, true, false]);
+}
