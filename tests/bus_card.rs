@@ -2,6 +2,14 @@
 
 use endat_hdl::card::bus::HostBus;
 
+/// Every front with words of 32 bits.
+pub const WORD_BUSES: [HostBus; 4] = [
+    HostBus::Apb,
+    HostBus::Wishbone,
+    HostBus::AxiLite,
+    HostBus::AhbLite,
+];
+
 /// A configuration of two channels with a bus.
 pub fn text(bus: HostBus, more: &str) -> String {
     let name = bus.name();

@@ -26,7 +26,6 @@ mod ssi {
 }
 mod stream {
     mod infos;
-    mod refusals;
     mod runs;
 }
 mod t_format {
@@ -37,8 +36,8 @@ mod t_format {
 #[path = "hosts/desk.rs"]
 mod desk;
 #[allow(dead_code)] // part of it is for the tests of sim/
-#[path = "../sim/tests/service/rig.rs"]
-mod service_rig;
+#[path = "../sim/tests/service/waits.rs"]
+mod service_waits;
 #[allow(dead_code)]
 #[path = "../sim/tests/stream/rig.rs"]
 mod stream_rig;

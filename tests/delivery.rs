@@ -20,4 +20,13 @@ mod tools;
 
 mod bus {
     mod board;
+    mod configuration;
+}
+mod stream {
+    mod refusals;
+}
+mod t_format {
+    mod card {
+        mod refusals;
+    }
 }

@@ -1,6 +1,6 @@
 //! `host.bus` in a configuration: what is emitted, and what is refused.
 
-use super::{text, WORD_BUSES};
+use crate::bus_card::{text, WORD_BUSES};
 use endat_gen::config::{load_preset, parse, preset, DEFAULT_PRESET};
 use endat_hdl::card::bus::HostBus;
 

@@ -3,7 +3,6 @@
 mod bank;
 mod claims;
 mod cocotb;
-mod configuration;
 mod error_test;
 mod handshake;
 mod outputs;
@@ -16,7 +15,7 @@ pub mod spi;
 mod three_ways;
 mod uart;
 
-use crate::bus_card::text;
+use crate::bus_card::{text, WORD_BUSES};
 use crate::made;
 use endat_gen::config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
@@ -28,14 +27,6 @@ use endat_sim::line::LineConfig;
 use endat_sim::rng::Rng;
 use endat_sim::US;
 use rtl_design::engine::Compiled;
-
-/// Every front with words of 32 bits.
-pub const WORD_BUSES: [HostBus; 4] = [
-    HostBus::Apb,
-    HostBus::Wishbone,
-    HostBus::AxiLite,
-    HostBus::AhbLite,
-];
 
 /// Address of a word.
 pub fn at(block: &Block, name: &str, channel: usize) -> u16 {

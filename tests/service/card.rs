@@ -1,6 +1,6 @@
 //! The service behind the host link of a card.
 
-use crate::service_rig::{quick, times};
+use crate::service_waits::{quick, times};
 use crate::{host, made};
 use endat_hdl::{
     card::{service_times, uart_bridge::TIMEOUT_US},

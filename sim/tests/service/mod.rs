@@ -11,3 +11,4 @@ mod three_ways;
 mod unplugged;
 mod upsets;
 mod waiting;
+mod waits;

@@ -1,5 +1,6 @@
 //! An encoder port with its service on a bench, and a host at its memory.
 
+pub use super::waits::{quick, times, SYSTEM_HZ};
 use endat_hdl::{
     config::LIST,
     encoder_port::EncoderPort,
@@ -27,27 +28,10 @@ use std::{
     sync::{Mutex, OnceLock, PoisonError},
 };
 
-/// System clock of these tests.
-pub const SYSTEM_HZ: u64 = 16_000_000;
 /// EnDat clock.
 pub const ENDAT_HZ: u64 = 2_000_000;
 /// Longer than any request or initialisation.
 const LIMIT: Time = 2_000 * MS;
-
-/// Short waits, so that a test does not take as long as a power-up.
-pub fn times(initialise: bool) -> ServiceTimes {
-    ServiceTimes {
-        initialise,
-        power_up_ms: 2,
-        after_pulse_ms: 2,
-        reset_ms: 3,
-        write_ms: 2,
-        gap_ms: 1,
-        busy_ms: 30,
-        request_ms: 60,
-        ..ServiceTimes::at(SYSTEM_HZ)
-    }
-}
 
 /// What a port is made for.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -109,15 +93,6 @@ fn engine(make: Make) -> Compiled {
         .lock()
         .unwrap_or_else(PoisonError::into_inner);
     made.entry(make).or_insert_with(|| make.engine()).clone()
-}
-
-/// An encoder for whose waits these tests have the time.
-pub fn quick(mut encoder: EncoderConfig) -> EncoderConfig {
-    encoder.tac = 0..=100_000_000;
-    encoder.write_time = 0..=MS;
-    encoder.reset_time = 2 * MS;
-    encoder.parameter_gap = encoder.parameter_gap.min(MS);
-    encoder
 }
 
 /// An encoder that makes nobody wait, not even between two parameters.

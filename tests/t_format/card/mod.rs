@@ -4,7 +4,6 @@ mod faults;
 mod memory;
 mod neighbours;
 mod program;
-mod refusals;
 mod services;
 mod three_ways;
 
