@@ -23,7 +23,9 @@ fn duckdb_and_pandas_count_what_the_campaign_counted() {
     }
     let folder = tools::folder("campaign_results");
     let out = folder.join("upsets.csv");
-    let campaign = ["campaign", "upsets", "--subject", "port", "--cases", "3000"];
+    // With fewer cases no upset is silent, and the page's question has no answer.
+    let words = "campaign upsets --subject port --cases 12000";
+    let campaign: Vec<&str> = words.split(' ').collect();
     let outcome = run(&[&campaign[..], &["--out", out.to_str().unwrap()]].concat());
     assert_eq!(outcome.exit_code, 0, "{outcome:?}");
     let tally = Part::read(&out).unwrap().tally;
