@@ -1,6 +1,6 @@
 //! The live page: what it is answered, whom it refuses, what becomes of it when a card goes, and how it is in a browser.
 
-use crate::hosts::{quick_service_port, quick_text, slow_card, Served, SERVICE};
+use crate::hosts::{quick_service_port, slow_card, Served, SERVICE};
 use crate::program::{self, begun, Dir};
 use crate::tools;
 use endat_gen::virtual_card::Door;
@@ -534,7 +534,7 @@ fn a_browser_shows_the_page_and_obeys_its_keys() {
     }
     let dir = tools::folder("view");
     let config = dir.join("card.toml");
-    let text = quick_text(SERVICE);
+    let text = endat_gen::config::preset(SERVICE).unwrap();
     let (before, line) = text.split_once("\n[line]").unwrap();
     let line = line.replacen("parts = []", "parts = [\"alignment\", \"margin\"]", 1);
     fs::write(&config, format!("{before}\n[line]{line}")).unwrap();
