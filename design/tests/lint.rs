@@ -49,9 +49,20 @@ impl Logic for Program {
     }
 }
 
+/// Families, the options that end synthesis once memories are mapped, and the block RAM with its number.
+const FAMILIES: [(&str, &str, &str, usize); 3] = [
+    ("synth_ice40", "-run begin:map_gates", "SB_RAM40_4K*", 3),
+    ("synth_ecp5", "-run begin:map_gates", "DP16KD", 1),
+    (
+        "synth_xilinx -family xc6s -flatten",
+        "-run begin:fine",
+        "RAMB*",
+        1,
+    ),
+];
+
 /// No family builds it from look-up tables.
-#[test]
-fn a_read_only_memory_becomes_block_ram() {
+fn becomes_block_ram(test: &str, is_short: bool) {
     if !tools::require("yosys", "block RAM in the netlist") {
         return;
     }
@@ -64,24 +75,28 @@ fn a_read_only_memory_becomes_block_ram() {
         words: Rom::new(&words),
     };
     block.connect_all();
-    let (folder, files) = write(&elaborate(&block, "program").unwrap(), "rom");
-    // As far as memories are mapped: gates take most of the time.
-    for (synth, ram, count) in [
-        ("synth_ice40 -run begin:map_gates", "SB_RAM40_4K*", 3),
-        ("synth_ecp5 -run begin:map_gates", "DP16KD", 1),
-        (
-            "synth_xilinx -family xc6s -flatten -run begin:fine",
-            "RAMB*",
-            1,
-        ),
-    ] {
+    let (folder, files) = write(&elaborate(&block, "program").unwrap(), test);
+    for (synth, end, ram, count) in FAMILIES {
+        let end = if is_short { end } else { "" };
         let script = format!(
-            "read_verilog {}; hierarchy -check -top program; {synth} -top program; select -assert-count {count} t:{ram}",
+            "read_verilog {}; hierarchy -check -top program; {synth} {end} -top program; select -assert-count {count} t:{ram}",
             files.join(" ")
         );
         let (good, text) = tools::run("yosys", &folder, &["-q", "-p", &script]);
         assert!(good, "{synth}, {}: {text}", folder.display());
     }
+}
+
+/// Gates take most of the time.
+#[test]
+fn a_read_only_memory_becomes_block_ram() {
+    becomes_block_ram("rom", true);
+}
+
+#[test]
+#[ignore = "slow: whole synthesis for three families"]
+fn a_read_only_memory_becomes_block_ram_in_whole_synthesis() {
+    becomes_block_ram("rom-whole", false);
 }
 
 /// A synchroniser of three stages and, for comparison, a delay of eight plain registers.
