@@ -5,6 +5,7 @@ use crate::program::Dir;
 use crate::tools;
 use std::collections::BTreeSet;
 use std::fs;
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -300,15 +301,23 @@ impl Of {
     }
 }
 
-/// Does in a folder what a page says, in its order; its card comes first, at a separate port. Gives the folder, and the output.
-fn follow(page: &str, port: u16, of: Of, edit: impl Fn(&str) -> String) -> (Dir, String) {
+/// Does in a folder what a page says, in its order; its card comes first, at a free port. Gives the folder, and the output.
+fn follow(page: &str, of: Of, edit: impl Fn(&str) -> String) -> (Dir, String) {
     let mut text = edit(&fs::read_to_string(root().join(page)).unwrap());
+    let free = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = free.local_addr().unwrap().port();
+    drop(free);
     let folder = Dir::new(&format!("follow-{port}"));
     if of == Of::Quick {
         let quick = fs::read(quicker_service_file()).unwrap();
         folder.write("quick.toml", &quick);
+        // Faults are made in cards that are simulated.
+        let load = match text.contains(" inject ") {
+            true => "",
+            false => "--load ",
+        };
         for usual in [" card --preset s6_two_channel_service --tcp", " card --tcp"] {
-            text = text.replace(usual, " card --config quick.toml --tcp");
+            text = text.replace(usual, &format!(" card --config quick.toml {load}--tcp"));
         }
         assert!(text.contains("quick.toml"), "{page}: another card now");
     }
@@ -336,11 +345,11 @@ fn follow(page: &str, port: u16, of: Of, edit: impl Fn(&str) -> String) -> (Dir,
     (folder, told)
 }
 
-fn readme(of: Of, port: u16) {
+fn readme(of: Of) {
     if !tools::require("bash", "the card of the README") {
         return;
     }
-    let (folder, told) = follow("README.md", port, of, |text| {
+    let (folder, told) = follow("README.md", of, |text| {
         let journey = text.split("I want to try it without hardware").nth(1);
         of.samples(journey.unwrap(), "--samples 10000")
     });
@@ -354,20 +363,20 @@ fn readme(of: Of, port: u16) {
 /// Catches a journey of the README that ends in an error.
 #[test]
 fn readme_journey_works_with_a_quick_card() {
-    readme(Of::Quick, 7710);
+    readme(Of::Quick);
 }
 
 #[test]
 #[ignore = "slow: the README's card at its own clock"]
 fn readme_journey_works_as_printed() {
-    readme(Of::Page, 7720);
+    readme(Of::Page);
 }
 
-fn recordings(of: Of, port: u16) {
+fn recordings(of: Of) {
     if !tools::require("bash", "recordings of the page") {
         return;
     }
-    let (folder, told) = follow("docs/recording.md", port, of, str::to_owned);
+    let (folder, told) = follow("docs/recording.md", of, str::to_owned);
     for file in ["night-0001.parquet", "night.svg", "rehearsal.csv"] {
         assert!(folder.0.join(file).exists(), "{file}\n{told}");
     }
@@ -376,20 +385,20 @@ fn recordings(of: Of, port: u16) {
 /// Catches a recording without an end, a name of a file that is another one, a rehearsal that nobody sees.
 #[test]
 fn recording_page_works_with_a_quick_card() {
-    recordings(Of::Quick, 7711);
+    recordings(Of::Quick);
 }
 
 #[test]
 #[ignore = "slow: the recording page's card at its own clock"]
 fn recording_page_works_as_printed() {
-    recordings(Of::Page, 7721);
+    recordings(Of::Page);
 }
 
-fn host_page(of: Of, port: u16) {
+fn host_page(of: Of) {
     if !tools::require("bash", "the page of the host") {
         return;
     }
-    let (folder, told) = follow("docs/host.md", port, of, |text| {
+    let (folder, told) = follow("docs/host.md", of, |text| {
         of.samples(text, "--samples 10000")
     });
     let rows = fs::read_to_string(folder.0.join("angles.csv")).unwrap();
@@ -399,21 +408,21 @@ fn host_page(of: Of, port: u16) {
 /// Catches a page of the host whose first look gives nothing.
 #[test]
 fn host_page_works_with_a_quick_card() {
-    host_page(Of::Quick, 7712);
+    host_page(Of::Quick);
 }
 
 #[test]
 #[ignore = "slow: the host page's card at its own clock"]
 fn host_page_works_as_printed() {
-    host_page(Of::Page, 7722);
+    host_page(Of::Page);
 }
 
 /// The tutorial as somebody follows it: its blocks, in order. `seconds` of the hour that it records are taken.
-fn tutorial(of: Of, port: u16, seconds: u64) {
+fn tutorial(of: Of, seconds: u64) {
     if !tools::require("bash", "the tutorial") {
         return;
     }
-    let (folder, told) = follow("docs/tutorial.md", port, of, |text| {
+    let (folder, told) = follow("docs/tutorial.md", of, |text| {
         assert!(text.contains("--samples 36000000") && text.contains("--from 1800 --to 1802"));
         let middle = seconds / 2;
         let text = of.samples(text, "--samples 500 ");
@@ -444,11 +453,11 @@ fn tutorial(of: Of, port: u16, seconds: u64) {
 /// Catches a step that does not work, or comes too early.
 #[test]
 fn tutorial_works_with_a_quick_card() {
-    tutorial(Of::Quick, 7713, 6);
+    tutorial(Of::Quick, 6);
 }
 
 #[test]
 #[ignore = "slow: the tutorial with its hour of rows"]
 fn tutorial_works_as_printed() {
-    tutorial(Of::Page, 7723, 3600);
+    tutorial(Of::Page, 3600);
 }

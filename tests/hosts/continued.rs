@@ -6,9 +6,10 @@ use endat_gen::cli::Outcome;
 use endat_gen::virtual_card::Door;
 use serde_json::Value;
 use std::fs;
+use std::time::{Duration, Instant};
 
 fn log(out: &str, more: &[&str]) -> Outcome {
-    let log = ["log", "--port", "virtual", "--samples", "30", "--out", out];
+    let log = ["log", "--port", "load", "--samples", "30", "--out", out];
     run(&[&log[..], more].concat())
 }
 
@@ -214,8 +215,10 @@ fn a_card_that_somebody_else_has_is_waited_for_and_that_is_told() {
         .unwrap();
     // It has the card when it has rows.
     let has_rows = || fs::metadata(&first).is_ok_and(|m| m.len() > 1_000);
+    let begin = Instant::now();
     while !has_rows() {
-        std::thread::sleep(std::time::Duration::from_millis(50));
+        assert!(begin.elapsed() < Duration::from_secs(120), "no rows");
+        std::thread::sleep(Duration::from_millis(50));
     }
     let log = ["log", "--samples", "1", "--port", &card.name];
     let output = program().args(log).output().unwrap();

@@ -1,8 +1,8 @@
 //! Virtual cards behind ports: TCP and pseudo terminals, in threads of the test.
 
-use super::{card_of, changed, QUICKER};
+use super::{changed, QUICKER};
 use endat_gen::config::Project;
-use endat_gen::virtual_card::{serve, Door};
+use endat_gen::virtual_card::{serve, Door, VirtualCard, VirtualConfig};
 use endat_host::transport::Port;
 use endat_host::{Bridge, Card};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,11 +22,28 @@ pub struct Served {
 
 impl Served {
     pub fn new(project: Project, door: impl FnOnce() -> Door + Send + 'static) -> Self {
+        Self::with(project, VirtualConfig::default(), door)
+    }
+
+    /// A card whose sets are made by arithmetic: it keeps real time on every machine.
+    pub fn loaded(project: Project, door: impl FnOnce() -> Door + Send + 'static) -> Self {
+        let config = VirtualConfig {
+            makes_sets: true,
+            ..VirtualConfig::default()
+        };
+        Self::with(project, config, door)
+    }
+
+    fn with(
+        project: Project,
+        config: VirtualConfig,
+        door: impl FnOnce() -> Door + Send + 'static,
+    ) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let (told, name) = std::sync::mpsc::channel();
         let raised = stop.clone();
         let thread = thread::spawn(move || {
-            let mut card = card_of(&project);
+            let mut card = VirtualCard::new(&project, &config).unwrap();
             let mut door = door();
             told.send(door.name()).unwrap();
             serve(&mut card, &mut door, &raised, None, |_| {});

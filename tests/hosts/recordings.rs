@@ -7,17 +7,9 @@ use std::fs;
 
 const SAMPLES: &str = "150";
 
-/// A log of the first sample sets of a card that is the same each time.
+/// A log of the first sample sets of a card that makes the same ones each time.
 fn log(out: &str, more: &[&str]) -> endat_gen::cli::Outcome {
-    let log = [
-        "log",
-        "--port",
-        "virtual",
-        "--samples",
-        SAMPLES,
-        "--out",
-        out,
-    ];
+    let log = ["log", "--port", "load", "--samples", SAMPLES, "--out", out];
     run(&[&log[..], more].concat())
 }
 

@@ -109,7 +109,7 @@ fn assert_rows(rows: &VecDeque<Row>, sent: &[BTreeSet<u64>; 2]) {
 /// Catches a torn frame that is taken for a whole one, and sets that vanish without a number.
 #[test]
 fn a_host_that_is_away_for_long_knows_what_it_has_missed() {
-    knows_what_it_has_missed(&[0, 6, 60, 0], 40, &[150]);
+    knows_what_it_has_missed(&[0, 50, 0], 20, &[120]);
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn knows_what_it_has_missed(pauses_ms: &[u64], count: usize, gaps: &[u64]) {
 /// Catches a buffer that overwrites, a count of lost sets that is not that of the gaps, and half a set.
 #[test]
 fn a_host_that_drains_too_slowly_gets_whole_sets_and_the_number_of_the_others() {
-    drains_too_slowly(15, 60, 100);
+    drains_too_slowly(9, 60, 30);
 }
 
 #[test]
