@@ -123,6 +123,7 @@ fn cycle_time_measures_frames_with_additional_data_and_a_supplement() {
 }
 
 #[test]
+#[ignore = "slow: cycle times behind a long cable"]
 fn cycle_time_holds_behind_a_long_cable_and_marks_what_does_not() {
     good(&["bench", "cycle-time", "--cable-m", "100"]);
     let outcome = run(&["bench", "cycle-time", "--cable-m", "100", "--bits", "1"]);

@@ -110,6 +110,7 @@ fn rust_version_is_what_the_dependencies_need() {
 /// The driver with the Rust that it asks for, and for processors without an operating system: as far as they are installed, for neither
 /// comes from where packages come from. Catches a function that is younger, and one that needs a system.
 #[test]
+#[ignore = "slow: the driver with an older Rust and for processors without a system"]
 fn the_driver_builds_with_an_older_rust_and_for_small_processors() {
     let listed = |arguments: &[&str]| {
         let output = Command::new("rustup").args(arguments).output();

@@ -17,3 +17,13 @@ mod sim;
 #[allow(dead_code, unused_imports)]
 mod tools;
 mod view;
+
+/// These tests wait for programs more than they compute: twice as many at a time as the machine has cores.
+#[ctor::ctor(unsafe)]
+fn more_threads() {
+    const THREADS: &str = "RUST_TEST_THREADS";
+    if std::env::var_os(THREADS).is_none() {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        std::env::set_var(THREADS, (2 * cores).to_string());
+    }
+}

@@ -111,16 +111,18 @@ fn the_line_of_a_t_format_encoder_can_be_written_and_is_not_drawn() {
     assert!(refused.contains("has one channel"), "{refused}");
 }
 
-/// Answers to requests with frames of their own, and what the initialisation has sent before the first trigger.
+/// Frames of channel 0 in the report of a scenario.
+fn frames_of(scenario: &str) -> Vec<serde_json::Value> {
+    let report: serde_json::Value =
+        serde_json::from_str(&good(&["sim", scenario, "--json"])).unwrap();
+    let rows = report[0]["channels"][0]["frames"].as_array();
+    rows.unwrap().clone()
+}
+
+/// Answers to requests with separate frames.
 #[test]
-fn requests_and_steps_are_in_the_report() {
-    let rows = |name: &str| -> Vec<serde_json::Value> {
-        let report: serde_json::Value =
-            serde_json::from_str(&good(&["sim", name, "--json"])).unwrap();
-        let rows = report[0]["channels"][0]["frames"].as_array();
-        rows.unwrap().clone()
-    };
-    let parameter = rows("parameter");
+fn requests_are_in_the_report() {
+    let parameter = frames_of("parameter");
     let answers: Vec<_> = parameter
         .iter()
         .filter(|r| !r["answer"].is_null())
@@ -132,8 +134,12 @@ fn requests_and_steps_are_in_the_report() {
     assert_eq!(answers[1]["encoder"]["command"], 0b100_011);
     assert_eq!(answers[1]["answer"]["word"], 0x0D_801D);
     assert_eq!(answers[1]["answer"]["crc_good"], true);
+}
 
-    let initialise = rows("initialise");
+#[test]
+#[ignore = "slow: the steps of the initialisation, a scenario of two seconds"]
+fn steps_of_the_initialisation_are_in_the_report() {
+    let initialise = frames_of("initialise");
     let commands: Vec<_> = initialise
         .iter()
         .map(|r| r["encoder"]["command"].as_u64())

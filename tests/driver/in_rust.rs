@@ -355,6 +355,7 @@ fn words(bus: HostBus, more: &str) -> Bench<World> {
 }
 
 #[test]
+#[ignore = "slow: the Rust driver's whole journey over AXI4-Lite"]
 fn everything_works_over_axi_lite() {
     words(HostBus::AxiLite, &everything()).journey();
 }
