@@ -9,7 +9,7 @@ use endat_gen::area;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::load_preset;
 use endat_hdl::card::bus::{
-    apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
+    ahb_lite::AhbLiteCard, apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard,
 };
 use endat_hdl::card::Card;
@@ -62,6 +62,7 @@ fn blocks() -> Vec<(Box<dyn Block>, &'static str)> {
         (Box::new(ApbCard::new(&with_outputs)), "apb_card"),
         (Box::new(WishboneCard::new(&card)), "wishbone_card"),
         (Box::new(AxiLiteCard::new(&card)), "axi_lite_card"),
+        (Box::new(AhbLiteCard::new(&card)), "ahb_lite_card"),
         (Box::new(SpiCard::new(&card)), "spi_card"),
         (Box::new(ParallelCard::new(&card)), "parallel_card"),
     ]
