@@ -76,7 +76,11 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("[board]", "cable_m = 3\n[board]", "cable_m: unknown key; it belongs to [[channel]] or to [endat]"),
         ("[board]", "[host]\ninitial_values = false\n[board]", "host.initial_values: unknown key; it belongs to [device]"),
         ("system_hz = 100", "family = 1\nsystem_hz = 100", "clock.family: unknown key; known keys here: system_hz"),
+        ("[trigger]", "[triger]", "triger: unknown key; did you mean trigger?"),
+        ("[link]", "[links]", "links: unknown key; did you mean link?"),
         // types
+        ("system_hz = 100_000_000", "system_hz = 80 MHz", "write system_hz = 80_000_000"),
+        ("system_hz = 100_000_000", "system_hz = \"80 MHz\"", "must be a whole number; write system_hz = 80_000_000"),
         ("system_hz = 100_000_000", "system_hz = \"fast\"", "clock.system_hz = \"fast\": is a string, must be a whole number"),
         ("system_hz = 100_000_000", "system_hz = 1e8", "clock.system_hz = 1e8: is a float, must be a whole number"),
         ("system_hz = 100_000_000", "system_hz = -1", "clock.system_hz = -1: outside 1000000..250000000"),

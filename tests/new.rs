@@ -1,7 +1,7 @@
 //! `new`: questions, and the configurations that come of them.
 
 use crate::program::{bad, good, program, run, Dir};
-use endat_gen::config::keys::{ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES};
+use endat_gen::config::keys::{self, ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES};
 use endat_gen::config::{parse_any, Configuration};
 use endat_gen::json_schema::plain;
 use std::io::Write;
@@ -206,7 +206,7 @@ fn no_file_is_replaced_and_no_answer_is_made_up() {
     );
     let told = bad(&["new", "--yes", "--bus", "apb", "--baud", "9600"], 2);
     assert!(
-        told.contains("--baud = 9600: there is no such thing"),
+        told.contains("--baud = 9600: a card with protocol endat and bus apb has no such key; leave --baud out"),
         "{told}"
     );
     for (option, value) in [
@@ -221,4 +221,25 @@ fn no_file_is_replaced_and_no_answer_is_made_up() {
     let nowhere = dir.path("no/folder.toml");
     assert!(bad(&["new", "--yes", &nowhere], 2).contains("in a folder that is there"));
     assert_eq!(run(&["new", "--yes", &path, "--name", "a\"b"]).exit_code, 2);
+}
+
+/// Catches a board that the help offers and the command refuses, and a remedy that it refuses again.
+#[test]
+fn board_goes_with_every_bus_or_the_error_names_buses_that_have_one() {
+    let new = |bus: &str, board: &str| run(&["new", "-", "--yes", "--bus", bus, "--board", board]);
+    for bus in keys::BUS.words() {
+        let none = new(&bus, "none");
+        assert_eq!(none.exit_code, 0, "{bus}: {none:?}");
+        assert!(!none.stdout.contains("\n[board]"), "{bus}");
+        let named = new(&bus, "papilio_pro");
+        if named.exit_code == 0 {
+            assert!(named.stdout.contains("\nname = \"papilio_pro\""), "{bus}");
+            continue;
+        }
+        let told = named.messages.join("\n");
+        let (_, remedy) = told.split_once("use --board none, or --bus ").expect(&told);
+        for other in remedy.split(", ") {
+            assert_eq!(new(other, "papilio_pro").exit_code, 0, "{other}");
+        }
+    }
 }

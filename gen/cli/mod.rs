@@ -12,6 +12,7 @@ mod documents;
 mod emit;
 mod explain_key;
 mod flows;
+mod glossary;
 mod host;
 mod new;
 mod pictures;

@@ -1,5 +1,6 @@
 //! A file as TOML, and what is said if it is none.
 
+use super::quantity;
 use super::reader::Source;
 use crate::error::shorten;
 use toml::de::DeTable;
@@ -29,6 +30,9 @@ fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String
             let number = value.trim_start_matches(['0', '_']);
             let number = if number.is_empty() { "0" } else { number };
             format!("leave the first 0 out: {} = {number}", key.trim())
+        }
+        () if quantity::remedy(key.trim(), value).is_some() => {
+            quantity::remedy(key.trim(), value).unwrap_or_default()
         }
         () if written.is_some_and(|l| l.trim_start().starts_with("[channel]")) => {
             "there is one for each channel: write [[channel]]".into()

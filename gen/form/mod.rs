@@ -4,6 +4,7 @@ pub(crate) mod asked;
 pub(crate) mod document;
 mod free;
 pub mod key;
+mod quantity;
 pub(crate) mod reader;
 
 use crate::artifact::read_regular;

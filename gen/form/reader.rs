@@ -4,6 +4,7 @@
 
 use super::asked::{Asked, Kind};
 use super::key::{head, Key};
+use super::quantity;
 use crate::error::{shorten, Diagnostic};
 use endat_hdl::config::Limits;
 use endat_host::did_you_mean::guess;
@@ -91,7 +92,16 @@ impl<'t> Source<'t> {
     /// All complaints, in the order of the lines.
     pub fn into_diagnostics(self) -> Vec<Diagnostic> {
         // Only now all tables have been read: a key may belong to another one.
-        for stray in self.strays.take() {
+        let strays = self.strays.take();
+        // Keys below a misspelt heading are not missing.
+        let is_heading = |stray: &Stray| {
+            stray.name == stray.key && guess(&stray.key, stray.known.iter().copied()).is_some()
+        };
+        if strays.iter().any(is_heading) {
+            let mut all = self.diagnostics.borrow_mut();
+            all.retain(|d| d.line > 0 || !d.text.contains(": is missing; "));
+        }
+        for stray in strays {
             let text = self.stray(&stray);
             self.complain_line(stray.line, text);
         }
@@ -235,11 +245,12 @@ impl<'s, 't> Table<'s, 't> {
         let key = key.name;
         let spanned = self.get(key)?;
         let Some(integer) = spanned.get_ref().as_integer() else {
-            self.wrong_type(
-                key,
-                spanned,
-                "a whole number, without quotes or decimal point",
-            );
+            let written = self.source.text.get(spanned.span()).unwrap_or_default();
+            let wanted = match quantity::remedy(key, written) {
+                Some(remedy) => format!("a whole number; {remedy}"),
+                None => "a whole number, without quotes or decimal point".into(),
+            };
+            self.wrong_type(key, spanned, &wanted);
             return None;
         };
         match i128::from_str_radix(integer.as_str(), integer.radix()) {

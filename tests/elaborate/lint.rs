@@ -9,8 +9,8 @@ use endat_gen::area;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::load_preset;
 use endat_hdl::card::bus::{
-    ahb_lite::AhbLiteCard, apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
-    wishbone::WishboneCard,
+    ahb_lite::AhbLiteCard, apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard,
+    spi::SpiCard, wishbone::WishboneCard,
 };
 use endat_hdl::card::Card;
 use endat_hdl::config::OutputParts;

@@ -1,6 +1,6 @@
 //! `explain NAME`: what a key, a cause, a register or a field is.
 
-use crate::cli::explain_key;
+use crate::cli::{explain_key, glossary};
 use crate::error::{shown, GenError};
 use crate::maps::values_elsewhere;
 use endat_host::causes;
@@ -119,17 +119,16 @@ pub fn text(typed: &str) -> Result<String, GenError> {
     }
     text += &values;
     text += &explain_key::text(name);
+    text += &glossary::text(name);
     if text.is_empty() {
-        let causes: Vec<&str> = causes::ALL.iter().map(|c| c.name).collect();
         let guess: Vec<String> = closest(name, names(), |known| known);
         let guess = match guess.is_empty() {
             true => String::new(),
             false => format!("did you mean {}? ", guess.join(" or ")),
         };
         return Err(GenError::input(format!(
-            "name = {}: is no key of a configuration, and no cause, block, register, field or value of one; {guess}causes are {}; registers: `endat-gen reg list`; keys: docs/configuration.md",
+            "name = {}: no key, cause, register, field or word of the glossary has this name; {guess}`endat-gen reg list` lists registers and docs/configuration.md keys",
             shown(typed),
-            causes.join(", ")
         )));
     }
     Ok(text)
@@ -148,7 +147,8 @@ fn names() -> std::collections::BTreeSet<String> {
         all.chain([block.name.to_owned()]).collect::<Vec<_>>()
     });
     let keys = explain_key::names().into_iter();
-    causes.chain(registers).chain(keys).collect()
+    let words = glossary::names().into_iter();
+    causes.chain(registers).chain(keys).chain(words).collect()
 }
 
 /// What `name` stands for in a field: a number, or a bit.

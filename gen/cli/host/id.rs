@@ -31,17 +31,20 @@ pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     for channel in 0..identity.channels {
         encoders.push(match card.ask_encoder(channel).map_err(told)? {
             Some(reply) => Encoder::Other(identity.protocol(channel), reply),
-            None if reads_plates => {
-                let plate = card.name_plate(channel).map_err(told)?;
-                Encoder::Endat(plate.into())
-            }
-            None => Encoder::NotRead,
+            None => match identity.protocol(channel) {
+                Protocol::Endat if reads_plates => {
+                    let plate = card.name_plate(channel).map_err(told)?;
+                    Encoder::Endat(plate.into())
+                }
+                Protocol::Endat => Encoder::NotRead,
+                other => Encoder::Mute(other),
+            },
         });
     }
     let is_good = encoders.iter().all(|encoder| match encoder {
         Encoder::Endat(plate) => plate.initialised,
         Encoder::Other(_, reply) => reply.is_ok(),
-        Encoder::NotRead => true,
+        Encoder::NotRead | Encoder::Mute(_) => true,
     });
     let stdout = if arguments.json {
         to_json(&as_json(&identity, &encoders))?
@@ -60,6 +63,8 @@ enum Encoder {
     NotRead,
     /// An EnDat encoder.
     Endat(Box<NamePlate>),
+    /// One of another protocol, which sends nothing but positions.
+    Mute(Protocol),
     /// One of another protocol, which has no name plate: what it has told, or why it has not.
     Other(Protocol, Result<Told, String>),
 }
@@ -90,6 +95,9 @@ fn as_text(identity: &Identity, encoders: &[Encoder]) -> String {
                     "\nencoder {channel}\n  type              EnDat, not read: the card has no part initialise"
                 );
             }
+            Encoder::Mute(protocol) => {
+                let _ = write!(text, "\nencoder {channel}\n{}", without_plate(*protocol));
+            }
             Encoder::Endat(plate) => {
                 let plate = plate_text(plate, identity.system_hz);
                 let _ = write!(text, "\nencoder {channel}\n{plate}");
@@ -103,10 +111,17 @@ fn as_text(identity: &Identity, encoders: &[Encoder]) -> String {
     text
 }
 
-/// What an encoder without a name plate tells of itself, in the form of one.
+/// The only line about an encoder that sends nothing but positions, and the first one about others without a name plate.
+fn without_plate(protocol: Protocol) -> String {
+    format!(
+        "  type              {}, which has no name plate\n",
+        protocol.name()
+    )
+}
+
+/// The answer of an encoder without a name plate, in the form of one.
 pub fn other_text(protocol: Protocol, reply: &Result<Told, String>) -> String {
-    let name = protocol.name();
-    let mut text = format!("  type              {name}, which has no name plate\n");
+    let mut text = without_plate(protocol);
     let lines = match reply {
         Ok(told) => told.lines.clone(),
         Err(why) => vec![("does not tell", why.clone())],
@@ -271,6 +286,7 @@ fn as_json(identity: &Identity, encoders: &[Encoder]) -> Value {
         let (protocol, told) = match encoder {
             Encoder::NotRead => ("endat", json!({ "initialised": null })),
             Encoder::Endat(p) => ("endat", plate(p)),
+            Encoder::Mute(protocol) => (protocol.row().word, json!({})),
             Encoder::Other(protocol, reply) => (protocol.row().word, other_json(reply)),
         };
         let mut all = json!({ "channel": channel, "protocol": protocol });

@@ -8,7 +8,7 @@ use super::Outcome;
 use crate::config;
 use crate::error::{shown, GenError};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
-use questions::{Answers, Question, QUESTIONS};
+use questions::{buses_of_boards, Answers, Question, NO_BOARD, QUESTIONS};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -168,14 +168,23 @@ fn ask(
 
 /// Refuses an option that nothing is asked about.
 fn check_asked(given: &Answers, all: &Answers) -> Result<(), GenError> {
-    let useless = given.iter().find(|(name, _)| !all.contains_key(*name));
-    useless.map_or(Ok(()), |(name, told)| {
+    // A card that no board can have has none.
+    let says_something = |name: &str, told: &str| name != "board" || told != NO_BOARD;
+    let mut useless = (given.iter())
+        .filter(|(name, told)| !all.contains_key(*name) && says_something(name, told));
+    useless.next().map_or(Ok(()), |(name, told)| {
         let bus = all.get("bus").map_or("", String::as_str);
         let protocol = all.get("protocol").map_or("", String::as_str);
-        Err(GenError::input(format!(
-            "--{name} = {}: there is no such thing with protocol {protocol} and bus {bus}; leave it out",
-            shown(told)
-        )))
+        let (name_of, told) = (*name, shown(told));
+        Err(GenError::input(match name_of {
+            "board" => format!(
+                "--board = {told}: a card behind bus {bus} stays inside a chip, so it has no board top; use --board {NO_BOARD}, or --bus {}",
+                buses_of_boards().join(", ")
+            ),
+            _ => format!(
+                "--{name_of} = {told}: a card with protocol {protocol} and bus {bus} has no such key; leave --{name_of} out"
+            ),
+        }))
     })
 }
 

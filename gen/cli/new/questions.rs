@@ -94,11 +94,17 @@ pub fn has_uart(answers: &Answers) -> bool {
     is(answers, "bus", HostBus::Uart.name())
 }
 
+/// Buses of cards that are a whole device.
+pub fn buses_of_boards() -> Vec<&'static str> {
+    let buses = HostBus::ALL.iter().filter(|bus| !bus.is_internal());
+    let of_devices = buses.filter(|bus| **bus != HostBus::Bare);
+    of_devices.map(|bus| bus.name()).collect()
+}
+
 /// The card can be a whole device.
 fn may_have_board(answers: &Answers) -> bool {
-    let buses = HostBus::ALL.iter().filter(|bus| !bus.is_internal());
-    let mut of_devices = buses.filter(|bus| **bus != HostBus::Bare);
-    of_devices.any(|bus| is(answers, "bus", bus.name()))
+    let buses = buses_of_boards();
+    buses.into_iter().any(|bus| is(answers, "bus", bus))
 }
 
 pub fn has_board(answers: &Answers) -> bool {

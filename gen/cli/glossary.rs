@@ -1,0 +1,57 @@
+//! Words of the protocol and of this project: the table of docs/glossary.md.
+
+const PAGE: &str = include_str!("../../docs/glossary.md");
+
+/// Rows of the table: words, and their meaning without links.
+fn rows() -> impl Iterator<Item = (&'static str, String)> {
+    let rows = PAGE.lines().filter_map(|line| {
+        let (word, meaning) = line
+            .strip_prefix("| ")?
+            .strip_suffix(" |")?
+            .split_once(" | ")?;
+        Some((word, crate::json_schema::plain(&without_links(meaning))))
+    });
+    rows.filter(|(word, _)| *word != "word")
+}
+
+/// `[text](address)` as `text`.
+fn without_links(text: &str) -> String {
+    let mut rest = text;
+    let mut plain = String::new();
+    while let Some((before, link)) = rest.split_once('[') {
+        let Some((name, behind)) = link.split_once("](") else {
+            break;
+        };
+        plain += before;
+        plain += name;
+        rest = behind.split_once(')').map_or("", |(_, after)| after);
+    }
+    plain + rest
+}
+
+/// What a row may be asked for by, in lower case: each of its words, and the symbol that one ends with, such as tD.
+fn names_of(words: &str) -> impl Iterator<Item = String> + '_ {
+    words.split(", ").flat_map(|word| {
+        let last = word.rsplit(' ').next().filter(|last| *last != word);
+        let symbol = last.filter(|last| last.starts_with('t') && last.len() <= 4);
+        [Some(word), symbol]
+            .into_iter()
+            .flatten()
+            .map(str::to_ascii_lowercase)
+    })
+}
+
+/// Rows of a word in lower case.
+pub fn text(name: &str) -> String {
+    rows()
+        .filter(|(words, _)| names_of(words).any(|known| known == name))
+        .map(|(words, meaning)| format!("{words}: {meaning}\n"))
+        .collect()
+}
+
+/// All words and symbols.
+pub fn names() -> Vec<String> {
+    rows()
+        .flat_map(|(words, _)| names_of(words).collect::<Vec<_>>())
+        .collect()
+}
