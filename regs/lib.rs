@@ -52,7 +52,7 @@ pub use register::{Access, Block, Field, Register};
 pub use result::{EVIDENCE_FLAGS, INFO_FIRST, LINE_FLAGS, RESULT};
 pub use service::SERVICE;
 
-/// Major, minor and patch version of the register map.
+/// Major, minor and patch version of the register map; minor rises with each word or field that is added (`regs/tests.rs` checks it).
 pub const VERSION: [u8; 3] = [1, 0, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");

@@ -23,12 +23,41 @@ fn words() -> Vec<(String, u16, &'static str)> {
     words
 }
 
-/// What the map has always been; `UPDATE_EXPECT` set renews it, for a new word.
+/// Compares with the committed list; `UPDATE_EXPECT` set renews it. Its first line is the version of the map: a list that has changed must
+/// have a higher minor number, so that a host can tell which words a card has.
 fn assert_golden(name: &str, now: &str) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("golden")
         .join(name);
-    golden::assert_committed(&path, now);
+    let committed = std::fs::read_to_string(&path).unwrap_or_default();
+    if let Err(why) = check_version(&committed, now, VERSION) {
+        panic!("{name}: {why}");
+    }
+    let [major, minor, _] = VERSION;
+    golden::assert_committed(&path, &format!("map {major}.{minor}\n{now}"));
+}
+
+/// The rule of the version: the minor number rises whenever a word or field is added.
+fn check_version(committed: &str, now: &str, version: [u8; 3]) -> Result<(), String> {
+    let (head, words) = committed.split_once('\n').unwrap_or_default();
+    let [major, minor, _] = version;
+    let next = format!("map {major}.{}", minor + 1);
+    match head == format!("map {major}.{minor}") && words != now {
+        true => Err(format!(
+            "the map has changed and its version has not: make VERSION in regs/lib.rs {next}, then renew the list"
+        )),
+        false => Ok(()),
+    }
+}
+
+#[test]
+fn a_new_word_needs_a_higher_minor_version() {
+    let committed = "map 1.4\ncard_id 000 ro\n";
+    let (same, more) = ("card_id 000 ro\n", "card_id 000 ro\ncard_new 001 ro\n");
+    assert!(check_version(committed, same, [1, 4, 0]).is_ok());
+    assert!(check_version(committed, more, [1, 5, 0]).is_ok());
+    let why = check_version(committed, more, [1, 4, 9]).unwrap_err();
+    assert!(why.contains("map 1.5"), "{why}");
 }
 
 #[test]

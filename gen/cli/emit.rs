@@ -8,6 +8,7 @@ use crate::error::GenError;
 use clap::Args;
 use endat_hdl::card::bus::HostBus;
 use serde_json::json;
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 /// Arguments of `emit`.
@@ -53,7 +54,10 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
             )));
         }
         let is_foreign = !artifact::foreign(&folder, &artifacts).is_empty();
-        found.push(format!("renew with: {}", repair(arguments, is_foreign)));
+        found.push(format!(
+            "renew with: {}",
+            repair(&program(), arguments, is_foreign)
+        ));
         return Err(GenError::CheckFailed(found));
     }
     if !arguments.force {
@@ -134,7 +138,7 @@ fn add_driver(
 }
 
 /// The command that makes the check pass; `force` if files would be lost by it.
-fn repair(arguments: &EmitArgs, force: bool) -> String {
+fn repair(program: &str, arguments: &EmitArgs, force: bool) -> String {
     let emission = &arguments.emission;
     let mut words = Vec::new();
     let mut add = |flag: &str, value: Option<String>| {
@@ -164,10 +168,30 @@ fn repair(arguments: &EmitArgs, force: bool) -> String {
     if force {
         words.push("--force".into());
     }
-    if words.is_empty() {
-        return "cargo run".into();
+    words.insert(0, format!("{program} emit"));
+    words.join(" ")
+}
+
+/// This program as it was called: `cargo run --` from the sources' target folder, its own name where it is installed.
+pub(super) fn program() -> String {
+    called(std::env::args_os().next().map(PathBuf::from))
+}
+
+fn called(name: Option<PathBuf>) -> String {
+    let name = name.unwrap_or_else(|| "endat-gen".into());
+    let folders = [name.parent(), name.ancestors().nth(2)];
+    let is_built = |profile: &str| {
+        let target = format!("target/{profile}");
+        folders
+            .into_iter()
+            .flatten()
+            .any(|folder| folder.ends_with(&target))
+    };
+    match () {
+        () if is_built("debug") => "cargo run --".into(),
+        () if is_built("release") => "cargo run --release --".into(),
+        () => quoted(&name.to_string_lossy()),
     }
-    format!("cargo run -- emit {}", words.join(" "))
 }
 
 /// A word for a POSIX shell.
@@ -183,11 +207,20 @@ pub(super) fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::PathBuf;
+
+    #[test]
+    fn an_installed_program_names_itself() {
+        let called = |name: &str| called(Some(name.into()));
+        assert_eq!(called("/src/core/target/debug/endat-gen"), "cargo run --");
+        assert_eq!(called("target/release/endat-gen"), "cargo run --release --");
+        assert_eq!(called("endat-gen"), "endat-gen");
+        assert_eq!(called("/my tools/endat-gen"), "'/my tools/endat-gen'");
+    }
 
     #[test]
     fn the_repair_command_can_be_pasted_into_a_shell() {
-        assert_eq!(repair(&EmitArgs::default(), false), "cargo run");
+        let repair = |arguments: &EmitArgs, force| repair("cargo run --", arguments, force);
+        assert_eq!(repair(&EmitArgs::default(), false), "cargo run -- emit");
         assert_eq!(
             repair(&EmitArgs::default(), true),
             "cargo run -- emit --force"

@@ -153,7 +153,7 @@ impl EncoderConfig {
             continuous: None,
             error_reset_stops_infos: false,
             function: LONG_RECOVERY,
-            plate: TypePlate::rotary(position_bits.min(31)),
+            plate: TypePlate::of_width(position_bits),
             values: InfoValues::default(),
             causes: Vec::new(),
             defects: Vec::new(),

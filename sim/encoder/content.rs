@@ -54,6 +54,18 @@ impl TypePlate {
         }
     }
 
+    /// A rotary encoder with a position of so many bits: above 31 bits the upper ones count revolutions.
+    pub fn of_width(position_bits: u32) -> Self {
+        let turn_bits = match position_bits {
+            0..32 => 0,
+            _ => (position_bits - 31).clamp(12, 15),
+        };
+        Self {
+            revolutions: if turn_bits > 0 { 1 << turn_bits } else { 0 },
+            ..Self::rotary((position_bits - turn_bits).min(31))
+        }
+    }
+
     /// How many of `position_bits` count revolutions.
     pub fn multiturn_bits(&self) -> u32 {
         u32::from(self.revolutions).checked_ilog2().unwrap_or(0)
@@ -117,4 +129,25 @@ pub struct Cause {
     pub alarms: u16,
     /// Bits of the warning word (0xB9 word 1).
     pub warnings: u16,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches a wide encoder that calls itself singleturn, and steps that are no turn.
+    #[test]
+    fn wide_positions_count_revolutions() {
+        for (bits, revolutions, steps) in [
+            (25, 0, 1 << 25),
+            (31, 0, 1 << 31),
+            (32, 1 << 12, 1 << 20),
+            (37, 1 << 12, 1 << 25),
+            (46, 1 << 15, 1 << 31),
+        ] {
+            let plate = TypePlate::of_width(bits);
+            let told = (u32::from(plate.revolutions), plate.measuring_steps);
+            assert_eq!(told, (revolutions, steps), "{bits}");
+        }
+    }
 }

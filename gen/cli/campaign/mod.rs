@@ -145,7 +145,8 @@ fn replay(arguments: &CampaignArgs, index: usize) -> String {
         Name::Random => ("random", random.as_str()),
         _ => ("sweep", ""),
     };
-    format!("cargo run --release -- campaign {name}{random} --case {index} --vcd case.vcd --svg case.svg")
+    let program = super::emit::program();
+    format!("{program} campaign {name}{random} --case {index} --vcd case.vcd --svg case.svg")
 }
 
 fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
