@@ -401,6 +401,7 @@ endat_error endat_trigger(const endat_card *card)
 endat_error endat_measure(const endat_card *card, endat_moment *moment, uint32_t limit_us)
 {
     uint16_t before[ENDAT_CHANNELS_MAX] = {0};
+    uint16_t under_way[ENDAT_CHANNELS_MAX] = {0};
     bool is_over = false;
     bool in_time = true;
     endat_wait wait;
@@ -409,6 +410,8 @@ endat_error endat_measure(const endat_card *card, endat_moment *moment, uint32_t
 
     for (n = 0u; (error == ENDAT_OK) && (n < moment->channels); n++) {
         before[n] = moment->channel[n].sequence;
+        /* The next result is that of an earlier trigger. */
+        under_way[n] = moment->channel[n].stale ? 1u : 0u;
     }
     if (error == ENDAT_OK) {
         error = endat_trigger(card);
@@ -422,7 +425,13 @@ endat_error endat_measure(const endat_card *card, endat_moment *moment, uint32_t
         in_time = endat_wait_more(&wait, RESULT_PAUSE_US);
         error = endat_read_moment(card, moment);
         for (n = 0u; (error == ENDAT_OK) && (n < moment->channels); n++) {
-            any_new = any_new || (moment->channel[n].sequence != before[n]);
+            const uint16_t results = (uint16_t)(moment->channel[n].sequence - before[n]);
+
+            any_new = any_new || (results != 0u);
+            /* Triggers of other sources go on: what is later than this call began is not stale for it. */
+            if (results > under_way[n]) {
+                moment->channel[n].stale = false;
+            }
             any_stale = any_stale || moment->channel[n].stale;
         }
         is_over = any_new && !any_stale;

@@ -153,7 +153,8 @@ endat_error endat_read_moment(const endat_card *card, endat_moment *moment);
 endat_error endat_trigger(const endat_card *card);
 
 /**
- * Triggers, and waits until every channel has its result.
+ * Triggers, and waits until every channel has its result. Timer and pin may go on: each result is of this trigger or of a later one, and
+ * its `stale` is false.
  * ENDAT_ERROR_TIMEOUT: at least one has none, as while its encoder is unplugged; the moment is filled all the same, and that channel
  * is stale.
  */

@@ -217,7 +217,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.link.write(word!(CARD.trigger_now), trigger)
     }
 
-    /// Triggers, and waits until every channel has its result. [`Error::Timeout`]: at least one has none, as while its encoder is
+    /// Triggers, and waits until every channel has its result. Timer and pin may go on: each result is of this trigger or of a later one,
+    /// and not stale. [`Error::Timeout`]: at least one has none, as while its encoder is
     /// unplugged; [`Card::read_moment`] has the others, and that channel is stale.
     pub fn measure(&mut self, limit_us: u32) -> Result<Moment, Error<L::Error>> {
         self.measure_channels(u32::MAX, limit_us)
@@ -235,7 +236,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         loop {
             // The last look comes behind the last pause.
             let is_in_time = self.pause(&mut wait, RESULT_PAUSE_US);
-            let moment = self.read_moment()?;
+            let mut moment = self.read_moment()?;
+            moment.since(&before);
             let pairs = moment.results().iter().zip(before.results()).enumerate();
             let mut asked = pairs.filter(|(channel, _)| channels >> channel & 1 == 1);
             let any_new = asked

@@ -232,6 +232,16 @@ impl Moment {
         Self { results, channels }
     }
 
+    /// Triggers of other sources go on: results of triggers that came after this earlier moment are not stale.
+    pub(crate) fn since(&mut self, before: &Self) {
+        for (now, then) in self.results.iter_mut().zip(&before.results) {
+            // The first result after it may be that of a trigger before it.
+            if now.sequence.wrapping_sub(then.sequence) > u16::from(then.stale) {
+                now.stale = false;
+            }
+        }
+    }
+
     /// One for each channel.
     pub fn results(&self) -> &[Reading] {
         &self.results[..self.channels]

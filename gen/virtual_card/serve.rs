@@ -254,8 +254,9 @@ impl Pace {
     }
 }
 
-/// Simulated time between two looks at the port.
-const SLICE_US: u64 = 100;
+/// Simulated times between two looks at the port, in turn: together no multiple of a usual trigger period, so that the accesses of a host
+/// fall at every phase of the triggers.
+const SLICES_US: [u64; 7] = [100, 61, 89, 73, 107, 67, 94];
 /// Time between two reports.
 const REPORT: Duration = Duration::from_secs(2);
 
@@ -274,13 +275,14 @@ pub fn serve(
     let simulated = |card: &VirtualCard| (card.now() - first) as f64 / SECOND;
     let mut reported = begin;
     let mut at_report = (0.0, 0.0);
+    let mut slices_us = SLICES_US.into_iter().cycle();
     let is_over = || limit.is_some_and(|l| begin.elapsed() >= l);
     while !stop.load(Ordering::Relaxed) && !is_over() {
         let was_open = door.is_open();
         let bytes = door.read();
         door.answer(|words| card.inject(words));
         card.send_bytes(&bytes);
-        card.run(SLICE_US * card.cycles_per_us);
+        card.run(slices_us.next().unwrap_or(SLICES_US[0]) * card.cycles_per_us);
         let answer = card.take_bytes();
         if !answer.is_empty() {
             door.write(&answer);

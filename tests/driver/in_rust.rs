@@ -28,6 +28,9 @@ const HOST_AND_TIMER: Sources = Sources {
     ..HOST
 };
 
+/// Rate of a timer that has a trigger under way at nearly every moment.
+const BUSY_HZ: u32 = 1_000_000;
+
 /// The card of a link, which has the hash of its configuration.
 fn opened_over<L: Link<Error: Debug>>(mut link: L, world: &World) -> Card<L, World> {
     let hash = u32::from_str_radix(&world.0.borrow().hash, 16).unwrap();
@@ -427,6 +430,26 @@ fn an_encoder_that_never_answers_is_told_with_its_step() {
 #[test]
 fn slow_reads_are_of_one_moment() {
     words(HostBus::Apb, ALL_PARTS).torn();
+}
+
+/// Catches a measurement that ends only when no trigger is under way, which a timer of a short period never lets be.
+#[test]
+fn measure_works_while_the_timer_triggers() {
+    let mut bench = words(HostBus::Apb, ALL_PARTS);
+    bench.wait_for_both();
+    let period_cycles = bench.card.facts().system_hz / BUSY_HZ;
+    let card = &mut bench.card;
+    card.set_triggers(HOST_AND_TIMER, Some(period_cycles))
+        .unwrap();
+    let mut last = card.read_moment().unwrap();
+    for _ in 0..6 {
+        let moment = card.measure(1_000).unwrap();
+        for (now, then) in moment.results().iter().zip(last.results()) {
+            assert!(now.fresh && !now.stale, "{now:?}");
+            assert_ne!(now.timestamp, then.timestamp);
+        }
+        last = moment;
+    }
 }
 
 fn parallel() -> Bench<Parallel<World>> {

@@ -296,6 +296,16 @@ static void settings(void)
     CHECK(endat_calibrate(&card, 3) == ENDAT_OK, "%s", "calibrate");
     measure_well();
     pause_us(200);
+    /* A timer that has a trigger under way at nearly every moment. */
+    error = endat_set_triggers(&card, sources | ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_TIMER_MASK, card.system_hz / 1000000u);
+    CHECK(error == ENDAT_OK, "%s", endat_error_text(error));
+    for (int n = 0; n < 6; n++) {
+        error = endat_measure(&card, &moment, 1 * MS);
+        CHECK(error == ENDAT_OK && moment.channel[0].fresh && !moment.channel[0].stale && !moment.channel[1].stale, "%s %d",
+              endat_error_text(error), n);
+    }
+    CHECK(endat_set_triggers(&card, sources, 0) == ENDAT_OK, "%s", "sources again");
+    pause_us(200);
 }
 
 static void wrong_crc(void)
