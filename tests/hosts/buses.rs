@@ -2,10 +2,11 @@
 
 use super::{card_of, found, SERVICE};
 use endat_gen::config::{parse, parse_any, preset, Configuration, Project};
-use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
+use endat_gen::virtual_card::{card_at, Door, VirtualCard, VirtualConfig};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::ID;
 use endat_host::feed::Feed;
+use endat_host::registers::Place;
 use endat_host::Bridge;
 use endat_sim::{MS, US};
 use std::collections::VecDeque;
@@ -249,4 +250,22 @@ fn sets_are_made_where_there_is_a_stream() {
     };
     let error = VirtualCard::new(&project, &config).err().unwrap();
     assert!(error.to_string().contains("give stream.fifo_bytes"));
+}
+
+/// Catches a card that looks at its port once in a period of the timer: each access of a host would meet the same moment of a frame, and who
+/// waits for another one would wait for ever.
+#[test]
+fn host_accesses_fall_at_every_phase_of_the_timer() {
+    let mut timed = project(HostBus::AxiLite, 8_000_000);
+    timed.card.sample_period_cycles = 800;
+    let served = super::ports::Served::new(timed, || Door::tcp("127.0.0.1:0").unwrap());
+    let mut card = card_at(&served.name, 0).unwrap();
+    let place = Place::named("result0.age_recovery.age_us", 2).unwrap();
+    card.wait_until_initialised(|| {}).unwrap();
+    let mut quarters = [0; 4];
+    for _ in 0..60 {
+        let age_us = card.read(&place).unwrap() as usize;
+        quarters[(age_us / 25).min(3)] += 1;
+    }
+    assert!(quarters.iter().all(|met| *met > 2), "{quarters:?}");
 }
