@@ -122,7 +122,13 @@ impl<T: Transport> Card<T> {
         let mut words = bridge.read(0, IDENTITY_WORDS).unwrap_or_default();
         if words.first() != Some(&ID) {
             bridge.calm()?;
-            words = bridge.read(0, IDENTITY_WORDS)?;
+            let again = bridge.read(0, IDENTITY_WORDS);
+            words = again.map_err(|error| match bridge.transport().refusal() {
+                Some(why) => HostError::Refused(format!(
+                    "{why}; end the program that has it, or try again when it has ended"
+                )),
+                None => error,
+            })?;
         }
         let identity = Identity::of(&words)?;
         Ok(Self {

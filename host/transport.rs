@@ -17,7 +17,15 @@ pub trait Transport {
     fn state(&self) -> LinkState {
         LinkState::default()
     }
+
+    /// Why the other end has closed it last, in its own words; none since it has answered.
+    fn refusal(&self) -> Option<&str> {
+        None
+    }
 }
+
+/// How a virtual card begins the line that a connection gets which it does not take. No answer of a card begins so.
+pub const REFUSAL: &str = "endat-card: ";
 
 /// What has become of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +56,10 @@ impl<T: Transport + ?Sized> Transport for Box<T> {
 
     fn state(&self) -> LinkState {
         (**self).state()
+    }
+
+    fn refusal(&self) -> Option<&str> {
+        (**self).refusal()
     }
 }
 
@@ -105,6 +117,10 @@ impl Transport for Tcp {
         match result {
             // The end of a socket that has been closed; a time-out is an error of its own.
             Ok(0) => Err(ErrorKind::ConnectionAborted.into()),
+            Ok(count) if buffer[..count].starts_with(REFUSAL.as_bytes()) => {
+                let text = String::from_utf8_lossy(&buffer[REFUSAL.len()..count]);
+                Err(io::Error::new(ErrorKind::ResourceBusy, text.trim_end()))
+            }
             other => or_nothing(other),
         }
     }
@@ -156,6 +172,7 @@ pub struct Port {
     baud: u32,
     open: Option<Box<dyn Transport>>,
     reopened: u64,
+    refusal: Option<String>,
 }
 
 impl Port {
@@ -172,6 +189,7 @@ impl Port {
             baud,
             open: Some(open),
             reopened: 0,
+            refusal: None,
         })
     }
 
@@ -202,8 +220,15 @@ impl Port {
             Some(port) => act(port.as_mut()),
             None => Ok(0),
         };
-        if result.is_err() {
-            self.open = None;
+        match &result {
+            Ok(0) => {}
+            Ok(_) => self.refusal = None,
+            Err(error) => {
+                self.open = None;
+                let is_busy = error.kind() == ErrorKind::ResourceBusy;
+                let told = is_busy.then(|| format!("{}: {error}", self.address));
+                self.refusal = told.or(self.refusal.take());
+            }
         }
         result.or(Ok(0))
     }
@@ -231,6 +256,10 @@ impl Transport for Port {
             is_open: self.open.is_some(),
             reopened: self.reopened,
         }
+    }
+
+    fn refusal(&self) -> Option<&str> {
+        self.refusal.as_deref()
     }
 }
 

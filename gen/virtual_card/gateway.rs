@@ -93,6 +93,11 @@ impl Gateway {
         }
     }
 
+    /// Bytes that have come and have not been carried out, be they a command or not.
+    pub fn untaken(&self) -> usize {
+        self.inbox.len()
+    }
+
     /// Drops what has not been carried out.
     pub fn forget(&mut self) {
         self.inbox.clear();

@@ -30,6 +30,14 @@ impl HostEnd {
         }
     }
 
+    /// Bytes that have come from the host and are still here.
+    pub fn untaken(&self) -> usize {
+        match self {
+            Self::Uart(uart) => uart.unsent(),
+            Self::Gateway(gateway) => gateway.untaken(),
+        }
+    }
+
     /// Drops those.
     pub fn forget(&mut self) {
         match self {

@@ -16,10 +16,12 @@ mod host_end;
 mod serve;
 pub(crate) mod sets;
 pub(crate) mod settings;
+mod tcp;
 
 pub use faults::{Fault, FAULTS};
-pub use serve::{serve, Door, Pace, CONTROL};
+pub use serve::{serve, Door, Pace};
 pub use settings::{VirtualConfig, CABLE_M};
+pub use tcp::CONTROL;
 
 use encoders::{check_device, encoder, motion, wanted};
 use faults::PortOf;
@@ -341,6 +343,11 @@ impl VirtualCard {
     /// Bytes that the card has not taken yet.
     pub fn unsent(&self) -> usize {
         self.host.unsent()
+    }
+
+    /// Bytes of the host that have not become a command yet, whether they ever do or not.
+    pub fn untaken(&self) -> usize {
+        self.host.untaken()
     }
 
     /// The host has gone: whole commands that it has sent are carried out if they are few, half a one is forgotten, answers are nobody's.

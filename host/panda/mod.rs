@@ -7,6 +7,7 @@
 //!
 //! Ref: PandABlocks-server, `docs/capture.rst` and `docs/commands.rst`; the client `pandablocks` reads little-endian data.
 
+mod client;
 mod control;
 mod data;
 mod server;

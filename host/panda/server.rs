@@ -1,13 +1,14 @@
 //! Connections of both ports, and the acquisition.
 
-use super::control::{answer, changes, Seen, State, Wish};
+use super::client::{Client, PATIENCE};
+use super::control::{answer, changes, State, Wish};
 use super::data::Times;
 use super::{data, Column};
 use crate::feed::{Feed, Row};
 use crate::{Card, HostError, Transport};
 use std::collections::VecDeque;
-use std::io::{self, ErrorKind, Read, Write};
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::io;
+use std::net::{SocketAddr, TcpListener};
 use std::time::{Duration, Instant, SystemTime};
 
 /// Port that clients send commands to.
@@ -15,10 +16,16 @@ pub const CONTROL_PORT: u16 = 8888;
 /// Port that clients read data from.
 pub const DATA_PORT: u16 = 8889;
 
-/// Longest line of a client.
-const LINE_MAX: usize = 4096;
-/// A client that does not take its data for so long is given up.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Lines are answered for so long at a time: then rows of the card have their turn.
+const TURN: Duration = Duration::from_millis(20);
+/// Connections to a port. Of more than that the one is closed that has been silent for the longest.
+const CONNECTIONS: usize = 256;
+/// Lines of a data client that are answered at a time; it needs one.
+const FORMS: usize = 16;
+/// Bytes that a data client may leave before a card waits that can.
+const BEHIND: usize = 1 << 20;
+/// How long the ends of acquisitions may take to go out when the server ends.
+const FAREWELL: Duration = Duration::from_secs(1);
 /// Wait for rows, and so for anything else.
 const SLICE: Duration = Duration::from_millis(10);
 
@@ -48,74 +55,25 @@ impl Ports {
     }
 }
 
-/// A connection, and the beginning of its next line.
-struct Client {
-    stream: TcpStream,
-    line: Vec<u8>,
-    /// What it has been told of values.
-    seen: Seen,
-    is_gone: bool,
-}
-
-impl Client {
-    fn accept(listener: &TcpListener) -> Option<Self> {
-        let (stream, _) = listener.accept().ok()?;
-        let is_ready = stream
-            .set_nonblocking(true)
-            .and(stream.set_nodelay(true))
-            .and(stream.set_write_timeout(Some(PATIENCE)));
-        is_ready.ok()?;
-        Some(Self {
-            stream,
-            line: Vec::new(),
-            seen: Seen::new(),
-            is_gone: false,
-        })
-    }
-
-    /// Whole lines that have come.
-    fn lines(&mut self) -> Vec<String> {
-        let mut buffer = [0; 1024];
-        loop {
-            match self.stream.read(&mut buffer) {
-                Ok(0) => {
-                    self.is_gone = true;
-                    break;
-                }
-                Ok(count) => self.line.extend(&buffer[..count]),
-                Err(e) if e.kind() == ErrorKind::WouldBlock => break,
-                Err(_) => {
-                    self.is_gone = true;
-                    break;
-                }
-            }
-        }
-        let mut lines = Vec::new();
-        while let Some(end) = self.line.iter().position(|b| *b == b'\n') {
-            let line: Vec<u8> = self.line.drain(..=end).collect();
-            lines.push(String::from_utf8_lossy(&line[..end]).into_owned());
-        }
-        if self.line.len() > LINE_MAX {
-            self.is_gone = true;
-        }
-        lines
-    }
-
-    fn send(&mut self, bytes: &[u8]) {
-        let sent = self
-            .stream
-            .set_nonblocking(false)
-            .and_then(|()| self.stream.write_all(bytes))
-            .and_then(|()| self.stream.set_nonblocking(true));
-        self.is_gone |= sent.is_err();
-    }
-}
-
 struct DataClient {
     client: Client,
     form: Option<data::Form>,
     /// It has the header of the acquisition under way.
     is_recording: bool,
+}
+
+impl DataClient {
+    /// The form that it asks for.
+    fn answer(&mut self, line: &str) {
+        let answer = match data::form(line) {
+            Ok(form) => {
+                self.form = Some(form);
+                "OK\n".to_owned()
+            }
+            Err(text) => text + "\n",
+        };
+        self.client.send(answer.as_bytes());
+    }
 }
 
 struct Acquisition {
@@ -130,7 +88,12 @@ pub struct Server<'c, T> {
     columns: Vec<Column>,
     ports: Ports,
     controls: Vec<Client>,
+    /// Whose line was answered last.
+    turn: usize,
     datas: Vec<DataClient>,
+    patience: Duration,
+    /// The card waits for clients that are behind.
+    waits: bool,
     acquisition: Option<Acquisition>,
     /// An acquisition ends by itself after so many rows.
     limit: Option<u64>,
@@ -152,6 +115,9 @@ impl<'c, T: Transport> Server<'c, T> {
             columns,
             ports,
             controls: Vec::new(),
+            turn: 0,
+            patience: PATIENCE,
+            waits: false,
             datas: Vec::new(),
             acquisition: None,
             limit,
@@ -159,6 +125,16 @@ impl<'c, T: Transport> Server<'c, T> {
             completion: "Ok",
             captured: 0,
         }
+    }
+
+    /// Drops a client for which a byte has waited this long [5 s].
+    pub fn set_patience(&mut self, patience: Duration) {
+        self.patience = patience;
+    }
+
+    /// The card's time goes on only while it is asked, so that it waits for clients that are behind, and no row is lost.
+    pub fn set_waits(&mut self) {
+        self.waits = true;
     }
 
     /// Serves until `stop` says so.
@@ -169,75 +145,117 @@ impl<'c, T: Transport> Server<'c, T> {
             self.answer_controls()?;
             self.answer_datas();
             match self.acquisition {
-                Some(_) => self.pump()?,
+                Some(_) if !self.is_behind() => self.pump()?,
+                Some(_) => std::thread::sleep(SLICE / 10),
                 None => std::thread::sleep(SLICE.saturating_sub(began.elapsed())),
             }
         }
-        self.end("Disarmed")
-    }
-
-    fn listen(&mut self) {
-        self.controls.extend(Client::accept(&self.ports.control));
-        let client = Client::accept(&self.ports.data);
-        self.datas.extend(client.map(|client| DataClient {
-            client,
-            form: None,
-            is_recording: false,
-        }));
-        self.controls.retain(|c| !c.is_gone);
-        self.datas.retain(|c| !c.client.is_gone);
-    }
-
-    fn answer_controls(&mut self) -> Result<(), HostError> {
-        let software = env!("CARGO_PKG_VERSION");
-        let card = format!("{:08x}", self.card.identity().configuration_hash);
-        for index in 0..self.controls.len() {
-            for line in self.controls[index].lines() {
-                let state = State {
-                    software,
-                    card: &card,
-                    columns: &self.columns,
-                    latest: self.latest.as_deref(),
-                    is_armed: self.acquisition.is_some(),
-                    completion: self.completion,
-                    captured: self.captured,
-                };
-                let news = changes(&line, &state, &mut self.controls[index].seen);
-                let (text, wish) = match news {
-                    Some(text) => (text, None),
-                    None => answer(&line, &state),
-                };
-                let text = match wish {
-                    Some(Wish::Arm) if self.acquisition.is_some() => {
-                        "ERR Readout still taking place\n".into()
-                    }
-                    Some(Wish::Arm) => {
-                        self.arm()?;
-                        text
-                    }
-                    Some(Wish::Disarm) => {
-                        self.end("Disarmed")?;
-                        text
-                    }
-                    None => text,
-                };
-                self.controls[index].send(text.as_bytes());
-            }
+        self.end("Disarmed")?;
+        let end = Instant::now() + FAREWELL;
+        while self.datas.iter().any(|d| d.client.waiting() > 0) && Instant::now() < end {
+            self.answer_datas();
+            self.datas.retain(|d| !d.client.is_gone());
+            std::thread::sleep(SLICE / 10);
         }
         Ok(())
     }
 
+    fn listen(&mut self) {
+        self.controls.retain(|c| !c.is_gone() && !c.is_served());
+        // One that has left reads as one that sends nothing more, and it has nothing more to send.
+        (self.datas).retain(|d| !d.client.is_gone() && !d.client.has_ended());
+        while let Ok((stream, _)) = self.ports.control.accept() {
+            if self.controls.len() >= CONNECTIONS {
+                let heard = self.controls.iter().map(Client::heard).enumerate();
+                if let Some((place, _)) = heard.min_by_key(|(_, heard)| *heard) {
+                    self.controls.swap_remove(place);
+                }
+            }
+            (self.controls).extend(Client::new(stream, self.patience).ok());
+        }
+        while let Ok((stream, _)) = self.ports.data.accept() {
+            if self.datas.len() >= CONNECTIONS {
+                let heard = self.datas.iter().enumerate();
+                // Who records has nothing to say for hours.
+                let heard = heard.map(|(n, d)| (n, (d.is_recording, d.client.heard())));
+                if let Some((place, _)) = heard.min_by_key(|(_, order)| *order) {
+                    self.datas.swap_remove(place);
+                }
+            }
+            let client = Client::new(stream, self.patience).ok();
+            self.datas.extend(client.map(|client| DataClient {
+                client,
+                form: None,
+                is_recording: false,
+            }));
+        }
+    }
+
+    /// Answers a line of each client in turn, until there are no more or the time is over; those that are left come next time.
+    fn answer_controls(&mut self) -> Result<(), HostError> {
+        let end = Instant::now() + TURN;
+        self.controls.iter_mut().for_each(Client::read);
+        let count = self.controls.len();
+        let mut without = 0;
+        while without < count && Instant::now() < end {
+            self.turn = (self.turn + 1) % count;
+            match self.controls[self.turn].line() {
+                None => without += 1,
+                Some(line) => {
+                    without = 0;
+                    if self.answer(self.turn, &line)? {
+                        break;
+                    }
+                }
+            }
+        }
+        self.controls.iter_mut().for_each(Client::flush);
+        Ok(())
+    }
+
+    /// Answers a line; whether the card was asked for something, which takes its time.
+    fn answer(&mut self, index: usize, line: &str) -> Result<bool, HostError> {
+        let card = format!("{:08x}", self.card.identity().configuration_hash);
+        let state = State {
+            software: env!("CARGO_PKG_VERSION"),
+            card: &card,
+            columns: &self.columns,
+            latest: self.latest.as_deref(),
+            is_armed: self.acquisition.is_some(),
+            completion: self.completion,
+            captured: self.captured,
+        };
+        let news = changes(line, &state, &mut self.controls[index].seen);
+        let (text, wish) = match news {
+            Some(text) => (text, None),
+            None => answer(line, &state),
+        };
+        let text = match wish {
+            Some(Wish::Arm) if self.acquisition.is_some() => {
+                "ERR Readout still taking place\n".into()
+            }
+            Some(Wish::Arm) => {
+                self.arm()?;
+                text
+            }
+            Some(Wish::Disarm) => {
+                self.end("Disarmed")?;
+                text
+            }
+            None => text,
+        };
+        self.controls[index].send(text.as_bytes());
+        Ok(wish.is_some())
+    }
+
     fn answer_datas(&mut self) {
         for each in &mut self.datas {
-            for line in each.client.lines() {
-                let answer = match data::form(&line) {
-                    Ok(form) => {
-                        each.form = Some(form);
-                        "OK\n".to_owned()
-                    }
-                    Err(text) => text + "\n",
+            each.client.read();
+            for _ in 0..FORMS {
+                let Some(line) = each.client.line() else {
+                    break;
                 };
-                each.client.send(answer.as_bytes());
+                each.answer(&line);
             }
         }
         // A client that comes late gets what is left.
@@ -245,6 +263,13 @@ impl<'c, T: Transport> Server<'c, T> {
         if let Some(times) = times.filter(|times| times.start.is_some()) {
             self.send_headers(times);
         }
+        self.datas.iter_mut().for_each(|d| d.client.flush());
+    }
+
+    /// Whether the card waits for a client.
+    fn is_behind(&self) -> bool {
+        let mut recording = self.datas.iter().filter(|d| d.is_recording);
+        self.waits && recording.any(|d| !d.client.is_gone() && d.client.waiting() > BEHIND)
     }
 
     /// Begins the acquisition for those who have asked for data and do not have its header.

@@ -5,6 +5,7 @@ mod buses;
 mod clients;
 mod commands;
 mod continued;
+mod crowds;
 pub mod desk;
 mod disturbed;
 mod few_cycles;

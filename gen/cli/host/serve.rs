@@ -5,6 +5,7 @@ use super::super::Outcome;
 use super::{interrupted, settled, told, PortArgs};
 use crate::error::GenError;
 use crate::number::number_if;
+use crate::virtual_card::is_virtual;
 use clap::Args;
 use endat_host::panda::{Column, Ports, Server, CONTROL_PORT, DATA_PORT};
 use endat_regs::Part;
@@ -67,6 +68,9 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
     }
     let stop = interrupted();
     let mut server = Server::new(&mut card, columns, ports, limit);
+    if is_virtual(arguments.port.name()) {
+        server.set_waits();
+    }
     server.run(|| stop.load(Ordering::Relaxed)).map_err(told)?;
     Ok(Outcome::default())
 }
