@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub enum Target {
     /// To stdout.
     Stdout,
-    /// Into one file, which may be replaced.
+    /// Into one file, which may be replaced; into numbered ones behind it where it may not be longer.
     One {
         /// Which.
         path: PathBuf,
@@ -104,8 +104,17 @@ impl Target {
     pub fn name(&self, number: u32) -> String {
         match self {
             Self::Stdout => "stdout".into(),
-            Self::One { path, .. } => path.display().to_string(),
+            Self::One { path, .. } if number == 1 => path.display().to_string(),
+            Self::One { path, .. } => numbered(path, number).display().to_string(),
             Self::Numbered { path, .. } => numbered(path, number).display().to_string(),
+        }
+    }
+
+    /// The number of the file behind this one; those that are there are of other recordings.
+    pub fn following(&self, number: u32) -> u32 {
+        match self {
+            Self::One { path, .. } => number.max(highest(path)) + 1,
+            _ => number + 1,
         }
     }
 
@@ -119,6 +128,14 @@ impl Target {
         }
     }
 
+    fn is_numbered(&self, number: u32) -> bool {
+        match self {
+            Self::Stdout => false,
+            Self::One { .. } => number > 1,
+            Self::Numbered { .. } => true,
+        }
+    }
+
     /// Makes a file; of numbered ones the first number from `number` on that is free, which it raises to that.
     fn open(&self, number: &mut u32) -> io::Result<Option<File>> {
         let path = match self {
@@ -127,7 +144,7 @@ impl Target {
         };
         fs::create_dir_all(folder(path))?;
         match self {
-            Self::Numbered { .. } => loop {
+            Self::Numbered { .. } | Self::One { .. } if self.is_numbered(*number) => loop {
                 match File::create_new(numbered(path, *number)) {
                     Err(e) if e.kind() == io::ErrorKind::AlreadyExists => *number += 1,
                     other => return other.map(Some),
@@ -218,6 +235,14 @@ impl Open {
             Self::File(sheet) => sheet.out.flush(),
             Self::Stdout(sheet) => sheet.out.flush(),
             Self::Parquet(file) => file.flush(),
+        }
+    }
+
+    /// Groups of rows until now; text has none.
+    pub fn groups(&self) -> u32 {
+        match self {
+            Self::File(_) | Self::Stdout(_) => 0,
+            Self::Parquet(file) => file.groups(),
         }
     }
 

@@ -23,7 +23,7 @@ pub struct Seen {
 }
 
 /// A row, of the card or of a file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurement {
     /// It is the first row of a file.
     pub begins_file: bool,
@@ -33,6 +33,8 @@ pub struct Measurement {
     pub time_s: f64,
     /// Triggers without a row just before.
     pub missing: u64,
+    /// Number and missing triggers follow from the rows around it.
+    pub fits: bool,
     /// Each channel.
     pub cells: Vec<Seen>,
     /// Each derived column.
@@ -78,6 +80,7 @@ impl Counter {
             trigger: row.run.is_none().then_some(row.trigger),
             time_s,
             missing: row.missing,
+            fits: true,
             cells: cells.collect(),
             derived,
         }
@@ -253,6 +256,7 @@ mod tests {
                     trigger: Some(n),
                     time_s: n as f64 * 0.01 + if is_behind { 5.0 } else { 0.0 },
                     missing: 0,
+                    fits: true,
                     cells: vec![Seen {
                         raw: None,
                         position: Some(1.0),

@@ -5,6 +5,7 @@ use super::derive::Derivation;
 use super::files::{Open, Target};
 use super::keep::{Entry, Keep, Kept};
 use super::layout::Layout;
+use super::parquet::{GROUPS, GROUPS_MAX};
 use super::picture::{Counter, Picture};
 use super::sheet::Format;
 use crate::error::GenError;
@@ -12,12 +13,26 @@ use endat_host::feed::Row;
 use std::io;
 
 /// When a file is ended and the next one begun.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// When it has so many bytes.
     pub bytes: Option<u64>,
     /// When its rows are so many cycles of the card's clock.
     pub cycles: Option<u64>,
+    /// When it has so many groups of rows, if it has groups.
+    pub groups: Option<u32>,
+}
+
+impl Limits {
+    /// Another file begins at so many bytes, or cycles, and before any file has too many groups.
+    pub fn of(bytes: Option<u64>, cycles: Option<u64>) -> Self {
+        let is_said = bytes.is_some() || cycles.is_some();
+        Self {
+            bytes,
+            cycles,
+            groups: Some(if is_said { GROUPS_MAX } else { GROUPS }),
+        }
+    }
 }
 
 /// A drawing, and what it is drawn from.
@@ -137,7 +152,7 @@ impl Recorder {
     /// Begins the next file.
     fn next(&mut self) -> io::Result<()> {
         if self.parts > 0 {
-            self.number += 1;
+            self.number = self.wishes.target.following(self.number);
         }
         let wishes = &self.wishes;
         let is_text = wishes.format != Format::Parquet;
@@ -165,6 +180,7 @@ impl Recorder {
         let since = cycles.saturating_sub(self.begin.unwrap_or(cycles));
         limits.bytes.is_some_and(|most| open.bytes() >= most)
             || limits.cycles.is_some_and(|most| since >= most)
+            || limits.groups.is_some_and(|most| open.groups() >= most)
     }
 
     fn put(&mut self, entry: &Entry) -> io::Result<()> {
@@ -306,8 +322,8 @@ mod tests {
 
     fn stats(files: &[PathBuf]) -> Stats {
         let mut all = None;
-        read_all(files, &mut |head, row| {
-            all.get_or_insert_with(|| Stats::new(head, 100)).push(&row);
+        read_all(files, false, &mut |head, row| {
+            all.get_or_insert_with(|| Stats::new(head, 100)).push(row);
         })
         .unwrap();
         all.unwrap()
@@ -317,29 +333,12 @@ mod tests {
     #[test]
     fn a_recording_in_parts_has_every_row_once_and_goes_on_when_resumed() {
         for (name, format, limits) in [
-            (
-                "r.csv",
-                Format::Csv,
-                Limits {
-                    bytes: Some(40_000),
-                    cycles: None,
-                },
-            ),
-            (
-                "r.jsonl",
-                Format::Jsonl,
-                Limits {
-                    bytes: None,
-                    cycles: Some(3_000_000),
-                },
-            ),
+            ("r.csv", Format::Csv, Limits::of(Some(40_000), None)),
+            ("r.jsonl", Format::Jsonl, Limits::of(None, Some(3_000_000))),
             (
                 "r.parquet",
                 Format::Parquet,
-                Limits {
-                    bytes: None,
-                    cycles: Some(5_000_000),
-                },
+                Limits::of(None, Some(5_000_000)),
             ),
         ] {
             let dir = tempfile::tempdir().unwrap();
@@ -388,6 +387,41 @@ mod tests {
         }
     }
 
+    /// Catches a file that grows without end, a row that is lost where the next one begins, and a file of another recording replaced.
+    #[test]
+    fn behind_a_file_with_all_its_groups_another_one_begins() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("long.parquet");
+        fs::write(dir.path().join("long-0004.parquet"), "of another one").unwrap();
+        let target = Target::One { path, force: false };
+        let limits = Limits {
+            groups: Some(1),
+            ..Limits::of(None, None)
+        };
+        let rows = 524_288 + 10;
+        let recorder = record(wishes(target, Format::Parquet, Keep::All, limits), 0..rows);
+        assert_eq!(recorder.parts(), 2);
+        let names = ["long.parquet", "long-0005.parquet"].map(|name| dir.path().join(name));
+        assert_eq!(recorder.name(), names[1].display().to_string());
+        let all = stats(&names);
+        assert_eq!((all.rows, all.missing), (rows, 0));
+        assert_eq!(stats(&names[1..]).rows, 10);
+        let misfits = read_all(&names, false, &mut |_, _| {}).unwrap().misfits;
+        assert_eq!(misfits.rows, 0, "{misfits:?}");
+        // One that is gone is no pause.
+        let third = dir.path().join("third.parquet");
+        let target = Target::One {
+            path: third.clone(),
+            force: false,
+        };
+        record(
+            wishes(target, Format::Parquet, Keep::All, limits),
+            rows + 7..rows + 20,
+        );
+        let gone = read_all(&[names[0].clone(), third], false, &mut |_, _| {}).unwrap();
+        assert_eq!((gone.misfits.rows, gone.misfits.triggers), (1, 17));
+    }
+
     #[test]
     fn an_event_has_a_file_with_what_was_before_it() {
         let dir = tempfile::tempdir().unwrap();
@@ -397,7 +431,7 @@ mod tests {
         };
         let faults = Faults::named(&["crc".into()], Judge::default()).unwrap();
         let keep = Keep::around(faults, 100, 50, 1);
-        let waiting = wishes(target, Format::Parquet, keep, Limits::default());
+        let waiting = wishes(target, Format::Parquet, keep, Limits::of(None, None));
         let mut recorder = Recorder::begin(waiting).unwrap();
         for n in 0..777 {
             recorder.row(row(n)).unwrap();
@@ -409,7 +443,7 @@ mod tests {
             }
         }
         let mut triggers = Vec::new();
-        read_all(&files(dir.path()), &mut |_, row| {
+        read_all(&files(dir.path()), false, &mut |_, row| {
             triggers.extend(row.trigger)
         })
         .unwrap();
@@ -422,7 +456,7 @@ mod tests {
         let path = dir.path().join("hour.parquet");
         let target = Target::One { path, force: false };
         let recorder = record(
-            wishes(target, Format::Parquet, Keep::All, Limits::default()),
+            wishes(target, Format::Parquet, Keep::All, Limits::of(None, None)),
             0..rows,
         );
         assert_eq!(recorder.written(), rows);

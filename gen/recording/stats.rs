@@ -220,11 +220,13 @@ impl Stats {
     /// Takes a row.
     pub fn push(&mut self, row: &Measurement) {
         self.rows += 1;
-        self.missing += row.missing;
-        self.gaps += u64::from(row.missing > 0);
+        // What a row says of its place is not taken where that does not fit.
+        let missing = if row.fits { row.missing } else { 0 };
+        self.missing += missing;
+        self.gaps += u64::from(missing > 0);
         let first = self.times_s.map_or(row.time_s, |t| t.0);
         self.times_s = Some((first, row.time_s));
-        if let Some(trigger) = row.trigger {
+        if let Some(trigger) = row.trigger.filter(|_| row.fits) {
             // A recording that was gone on with may count from the beginning again.
             let steps = |(count, last): (u64, u64)| {
                 count.saturating_add(trigger.checked_sub(last).unwrap_or(1))
@@ -289,6 +291,7 @@ mod tests {
                 trigger: Some(n as u64 + 7),
                 time_s: n as f64 * 0.01,
                 missing: 0,
+                fits: true,
                 cells: vec![Seen {
                     raw: None,
                     position,

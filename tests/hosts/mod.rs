@@ -6,6 +6,7 @@ mod clients;
 mod commands;
 mod continued;
 mod crowds;
+mod damaged;
 pub mod desk;
 mod disturbed;
 mod few_cycles;

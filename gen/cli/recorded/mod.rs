@@ -4,8 +4,7 @@ pub mod plot;
 pub mod stats;
 
 use crate::error::GenError;
-use crate::recording::picture::Measurement;
-use crate::recording::read::{self, Head};
+use crate::recording::read::{self, Found, Rows};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -27,11 +26,8 @@ impl FileArgs {
         }
     }
 
-    /// Reads all rows; what the file says before them, and what is to be told.
-    fn read(
-        &self,
-        take: &mut dyn FnMut(&Head, Measurement),
-    ) -> Result<(Head, Vec<String>), GenError> {
-        read::read_all(&self.files, take)
+    /// Reads all rows; `is_sparse`: some were left out on purpose.
+    fn read(&self, is_sparse: bool, take: Rows<'_>) -> Result<Found, GenError> {
+        read::read_all(&self.files, is_sparse, take)
     }
 }

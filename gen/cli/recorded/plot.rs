@@ -71,13 +71,13 @@ pub fn run(arguments: &PlotArgs) -> Result<Outcome, GenError> {
     };
     let mut picture = None;
     let (mut rows, mut missing) = (0u64, 0u64);
-    let (head, notes) = arguments.files.read(&mut |head, row| {
+    let found = arguments.files.read(false, &mut |head, row| {
         let new = || Picture::new(&head.units, &head.derived, head.judge(), extras);
         let picture = picture.get_or_insert_with(new);
         if (from..=to).contains(&row.time_s) {
             rows += 1;
             missing += row.missing;
-            picture.push(&row);
+            picture.push(row);
         }
     })?;
     let Some(picture) = picture.filter(|_| rows > 0) else {
@@ -90,6 +90,7 @@ pub fn run(arguments: &PlotArgs) -> Result<Outcome, GenError> {
             "--difference: takes two channels of one unit, which this recording has not; leave it out",
         ));
     }
+    let head = &found.head;
     let of = match head.every() {
         1 => String::new(),
         every => format!(", one of {every} rows and every one with a fault"),
@@ -98,7 +99,8 @@ pub fn run(arguments: &PlotArgs) -> Result<Outcome, GenError> {
     let begun = start.map_or(String::new(), |start| format!(", begun {start}"));
     let subtitle = format!("{rows} rows{of}, {missing} triggers missing{begun}");
     file.text = picture.svg(&arguments.files.names(), &subtitle);
-    let mut messages = notes;
+    let mut messages = found.notes;
+    messages.extend(found.misfits.told());
     messages.extend(write_all(&[file])?);
     Ok(Outcome {
         messages,

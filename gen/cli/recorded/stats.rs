@@ -4,7 +4,7 @@ use super::super::{to_json, Outcome};
 use super::FileArgs;
 use crate::error::GenError;
 use crate::number::number_if;
-use crate::recording::read::Head;
+use crate::recording::read::Found;
 use crate::recording::stats::{Stats, Track};
 use clap::Args;
 use serde_json::{json, Value};
@@ -18,6 +18,9 @@ pub struct StatsArgs {
     /// Noise is the deviation about parabolas through so many rows each [default: 100]
     #[arg(long, value_name = "ROWS", allow_negative_numbers = true)]
     window: Option<String>,
+    /// Rows were left out on purpose, by `log --every` or `--on-cause`, and the text does not say so
+    #[arg(long)]
+    sparse: bool,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -33,19 +36,22 @@ pub fn run(arguments: &StatsArgs) -> Result<Outcome, GenError> {
     let window =
         number_if("--window", &arguments.window, 4..=1_000_000)?.unwrap_or(WINDOW) as usize;
     let mut stats = None;
-    let (head, notes) = arguments.files.read(&mut |head, row| {
+    let found = arguments.files.read(arguments.sparse, &mut |head, row| {
         stats
             .get_or_insert_with(|| Stats::new(head, window))
-            .push(&row);
+            .push(row);
     })?;
-    let stats = stats.unwrap_or_else(|| Stats::new(&head, window));
+    let stats = stats.unwrap_or_else(|| Stats::new(&found.head, window));
     let stdout = match arguments.json {
-        true => to_json(&as_json(&stats, &head, window))?,
-        false => as_text(&stats, &head, window),
+        true => to_json(&as_json(&stats, &found, window))?,
+        false => as_text(&stats, &found, window),
     };
+    let mut messages = found.notes;
+    messages.extend(found.misfits.told());
     Ok(Outcome {
-        messages: notes,
-        ..Outcome::good(stdout)
+        stdout,
+        messages,
+        exit_code: u8::from(found.misfits.rows > 0),
     })
 }
 
@@ -66,7 +72,8 @@ fn track_json(track: &Track) -> Value {
     })
 }
 
-fn as_json(stats: &Stats, head: &Head, window: usize) -> Value {
+fn as_json(stats: &Stats, found: &Found, window: usize) -> Value {
+    let head = &found.head;
     let channels = stats.channels.iter().map(|channel| {
         let mut object = track_json(&channel.track);
         object["bad"] = json!(channel.tally.bad_rows());
@@ -91,6 +98,8 @@ fn as_json(stats: &Stats, head: &Head, window: usize) -> Value {
         "missing": stats.missing,
         "gaps": stats.gaps,
         "bad_rows": stats.bad_rows,
+        "misfits": found.misfits.rows,
+        "unaccounted_triggers": found.misfits.triggers,
         "window_rows": window,
         "channels": channels.collect::<Vec<_>>(),
         "derived": derived.collect::<Vec<_>>(),
@@ -151,7 +160,8 @@ fn track_text(text: &mut String, track: &Track, step: Option<f64>) {
     }
 }
 
-fn as_text(stats: &Stats, head: &Head, window: usize) -> String {
+fn as_text(stats: &Stats, found: &Found, window: usize) -> String {
+    let (head, misfits) = (&found.head, &found.misfits);
     let mut text = format!("rows                {}\n", stats.rows);
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<20}{value}");
@@ -174,6 +184,15 @@ fn as_text(stats: &Stats, head: &Head, window: usize) -> String {
         "missing",
         format!("{} triggers, {} times", stats.missing, stats.gaps),
     );
+    if misfits.rows > 0 {
+        line(
+            "do not fit",
+            format!(
+                "{} rows; {} triggers are neither rows nor missing",
+                misfits.rows, misfits.triggers
+            ),
+        );
+    }
     let percent = stats.bad_rows as f64 * 100.0 / stats.rows.max(1) as f64;
     // Rows that were left out were good, and count nowhere.
     let of = if head.every() > 1 {

@@ -12,7 +12,8 @@ pub(super) enum Store {
     Int(Vec<i32>),
     Double(Vec<f64>),
     Flag(Vec<bool>),
-    Word(Vec<ByteArray>),
+    /// Places in the list of names.
+    Word(Vec<u8>),
 }
 
 pub(super) struct Column {
@@ -37,6 +38,30 @@ impl Column {
             name: name.into(),
             store,
             levels: may_lack.then(Vec::new),
+        }
+    }
+
+    /// Bytes of a row in memory.
+    pub(super) fn row_bytes(&self) -> usize {
+        let value = match self.store {
+            Store::Long(_) | Store::Double(_) => 8,
+            Store::Int(_) => 4,
+            Store::Flag(_) | Store::Word(_) => 1,
+        };
+        value + if self.levels.is_some() { 2 } else { 0 }
+    }
+
+    /// Room for so many rows, so that memory does not grow later.
+    pub(super) fn reserve(&mut self, rows: usize) {
+        match &mut self.store {
+            Store::Long(all) => all.reserve_exact(rows),
+            Store::Int(all) => all.reserve_exact(rows),
+            Store::Double(all) => all.reserve_exact(rows),
+            Store::Flag(all) => all.reserve_exact(rows),
+            Store::Word(all) => all.reserve_exact(rows),
+        }
+        if let Some(levels) = &mut self.levels {
+            levels.reserve_exact(rows);
         }
     }
 
@@ -91,6 +116,7 @@ impl Column {
     pub(super) fn write(
         &mut self,
         to: &mut SerializedColumnWriter<'_>,
+        words: &Words,
     ) -> Result<(), ParquetError> {
         let levels = self.levels.as_deref();
         match &mut self.store {
@@ -111,7 +137,13 @@ impl Column {
                 all.clear();
             }
             Store::Word(all) => {
-                to.typed::<ByteArrayType>().write_batch(all, levels, None)?;
+                for some in all.chunks(WORDS_AT_ONCE) {
+                    let some = some
+                        .iter()
+                        .map(|place| words[usize::from(*place)].1.clone());
+                    let some: Vec<ByteArray> = some.collect();
+                    to.typed::<ByteArrayType>().write_batch(&some, None, None)?;
+                }
                 all.clear();
             }
         }
@@ -125,14 +157,17 @@ impl Column {
 /// Names that have come, and their bytes.
 pub(super) type Words = Vec<(&'static str, ByteArray)>;
 
-/// The bytes of a name are there once, however many rows have it.
-fn word(name: &'static str, words: &mut Words) -> ByteArray {
-    if let Some((_, known)) = words.iter().find(|(known, _)| std::ptr::eq(*known, name)) {
-        return known.clone();
-    }
-    let new = ByteArray::from(name);
-    words.push((name, new.clone()));
-    new
+/// Names are written in pieces of so many rows.
+const WORDS_AT_ONCE: usize = 8_192;
+
+/// The place of a name in the list; there are fewer than a byte tells apart.
+fn word(name: &'static str, words: &mut Words) -> u8 {
+    let known = words.iter().position(|(known, _)| *known == name);
+    let place = known.unwrap_or_else(|| {
+        words.push((name, ByteArray::from(name)));
+        words.len() - 1
+    });
+    place.min(u8::MAX.into()) as u8
 }
 
 /// The columns of a recording.

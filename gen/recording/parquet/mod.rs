@@ -3,6 +3,9 @@
 //! Rows are collected into groups. Behind each group stands what makes the file whole, and the next group takes its place. The old end is
 //! written once more behind the place of the new one, and cut off when that is there: whatever ends the program, and whenever, all but the
 //! last group is there.
+//!
+//! What makes a file whole tells of each of its groups: a file of very many of them is written for that most of the time, and kept in memory.
+//! So groups are large, and after [`GROUPS`] of them another file begins.
 
 mod columns;
 pub mod seal;
@@ -22,8 +25,12 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Rows of a group: 13 s at 10 kHz.
-pub const GROUP_ROWS: usize = 131_072;
+/// Bytes of a group in memory: 524 288 rows of two channels, 52 s at 10 kHz.
+const GROUP_BYTES: usize = 26_214_400;
+/// Groups of a file, unless another end of it is wanted.
+pub const GROUPS: u32 = 16;
+/// Groups of a file at most.
+pub const GROUPS_MAX: u32 = 256;
 /// A group is not kept in memory for longer than this.
 const GROUP_TIME: Duration = Duration::from_secs(60);
 
@@ -47,10 +54,12 @@ pub struct ParquetFile<D = File> {
     words: Words,
     about: Vec<KeyValue>,
     has_infos: bool,
-    /// Rows in memory, since when, and those in the file.
+    /// Rows of a whole group, those in memory, since when, and those in the file.
+    group_rows: usize,
     waiting: usize,
     since: Instant,
     rows: i64,
+    groups: u32,
     /// Where the last group ends.
     end: u64,
     /// Check sum of what is before that.
@@ -66,14 +75,21 @@ fn broken(error: ParquetError) -> io::Error {
 impl<D: Disk> ParquetFile<D> {
     /// Begins, in an empty file.
     pub fn new(file: D, layout: &Layout, about: &Value) -> io::Result<Self> {
-        let columns = columns(layout);
+        let mut columns = columns(layout);
+        let group_rows = GROUP_BYTES / columns.iter().map(Column::row_bytes).sum::<usize>();
+        columns.iter_mut().for_each(|c| c.reserve(group_rows));
         let schema: String = columns.iter().map(Column::schema).collect();
         let schema =
             parse_message_type(&format!("message endat {{ {schema} }}")).map_err(broken)?;
         let mut properties = WriterProperties::builder()
             .set_created_by(concat!("endat-gen ", env!("CARGO_PKG_VERSION")).to_owned())
-            .set_statistics_enabled(EnabledStatistics::Chunk)
+            .set_statistics_enabled(EnabledStatistics::None)
             .set_offset_index_disabled(true);
+        // A reader that looks for a time need not read all groups; of positions the least and the greatest are of no use.
+        for column in ["trigger", "cycles"] {
+            let all = EnabledStatistics::Chunk;
+            properties = properties.set_column_statistics_enabled(column.into(), all);
+        }
         for column in &columns {
             let path = parquet::schema::types::ColumnPath::from(column.name.as_str());
             let is_word = column.encoding().is_none();
@@ -92,9 +108,11 @@ impl<D: Disk> ParquetFile<D> {
             words: Vec::new(),
             about: vec![KeyValue::new(KEY.to_owned(), about.to_string())],
             has_infos: layout.additional_data,
+            group_rows,
             waiting: 0,
             since: Instant::now(),
             rows: 0,
+            groups: 0,
             end: 0,
             sum: seal::sum(),
             footer: Vec::new(),
@@ -106,6 +124,11 @@ impl<D: Disk> ParquetFile<D> {
     /// Bytes until now, without the rows in memory.
     pub fn bytes(&self) -> u64 {
         self.end + self.footer.len() as u64
+    }
+
+    /// Groups until now.
+    pub fn groups(&self) -> u32 {
+        self.groups
     }
 
     /// A row.
@@ -138,7 +161,7 @@ impl<D: Disk> ParquetFile<D> {
         }
         values.iter().for_each(|value| put(Item::Double(*value)));
         self.waiting += 1;
-        match self.waiting == GROUP_ROWS {
+        match self.waiting == self.group_rows {
             true => self.flush(),
             false => Ok(()),
         }
@@ -161,11 +184,12 @@ impl<D: Disk> ParquetFile<D> {
         let mut columns = self.columns.iter_mut();
         while let Some(mut to) = group.next_column().map_err(broken)? {
             let column = columns.next().expect("as many as the schema has");
-            column.write(&mut to).map_err(broken)?;
+            column.write(&mut to, &self.words).map_err(broken)?;
             to.close().map_err(broken)?;
         }
         group.close().map_err(broken)?;
         self.rows += self.waiting as i64;
+        self.groups += 1;
         self.waiting = 0;
         self.give()
     }
@@ -227,222 +251,4 @@ impl<D: Disk> ParquetFile<D> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::layout::DerivedColumn;
-    use super::super::picture::Measurement;
-    use super::super::read::read_all;
-    use super::*;
-    use endat_driver::AdditionalData as Info;
-    use endat_host::feed::{Cell, Row};
-    use endat_host::units::Scale;
-    use serde_json::json;
-    use std::io::Cursor;
-
-    fn about() -> Value {
-        let channel = json!({"unit": "deg", "steps_per_turn": 1u64 << 48, "range": 1u64 << 48});
-        json!({"system_hz": 1_000, "channels": [channel], "columns": {"v_deg": {"unit": "deg"}}})
-    }
-
-    fn layout() -> Layout {
-        Layout {
-            scales: vec![Scale::singleturn(48)],
-            additional_data: true,
-            derived: vec![DerivedColumn {
-                name: "v".into(),
-                unit: "deg".into(),
-                digits: None,
-            }],
-        }
-    }
-
-    fn entry(n: u64) -> Entry {
-        let info = Info {
-            content: n as u16,
-            ..Info::default()
-        };
-        let is_good = n % 7 != 3;
-        Entry {
-            row: Row {
-                run: (n == 5).then_some(0),
-                trigger: n + 1_000,
-                cycles: n * 10,
-                missing: n % 3,
-                cells: vec![Cell {
-                    position: is_good.then_some((1 << 48) - 50 + n),
-                    fresh: is_good,
-                    cause: if is_good { "none" } else { "crc" },
-                    infos: [Some(info), None],
-                }],
-            },
-            values: vec![is_good.then_some(n as f64 / 8.0)],
-        }
-    }
-
-    fn read(bytes: &[u8]) -> Vec<Measurement> {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), bytes).unwrap();
-        let mut rows = Vec::new();
-        read_all(&[file.path().to_owned()], &mut |_, row| rows.push(row)).unwrap();
-        rows
-    }
-
-    /// The same of what may have none.
-    fn rows_of(bytes: &[u8]) -> Option<Vec<Measurement>> {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), bytes).unwrap();
-        let mut rows = Vec::new();
-        read_all(&[file.path().to_owned()], &mut |_, row| rows.push(row)).ok()?;
-        Some(rows)
-    }
-
-    fn assert_rows(rows: &[Measurement], count: u64) {
-        assert_eq!(rows.len() as u64, count);
-        for (n, row) in rows.iter().enumerate() {
-            let Entry {
-                row: wanted,
-                values,
-            } = entry(n as u64);
-            let trigger = wanted.run.is_none().then_some(wanted.trigger);
-            assert_eq!((row.trigger, row.missing), (trigger, wanted.missing));
-            assert!((row.time_s - n as f64 * 0.01).abs() < 1e-12);
-            let (cell, other) = (&row.cells[0], &wanted.cells[0]);
-            assert_eq!((cell.raw, cell.fresh), (other.position, other.fresh));
-            assert_eq!((&*cell.cause, &row.derived), (other.cause, &values));
-        }
-    }
-
-    /// A disk with room for so many bytes.
-    #[derive(Clone)]
-    struct Small(Cursor<Vec<u8>>, usize);
-
-    impl Write for Small {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            let room = self.1.saturating_sub(self.0.position() as usize);
-            match bytes.len().min(room) {
-                0 => Err(io::ErrorKind::StorageFull.into()),
-                count => self.0.write(&bytes[..count]),
-            }
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-
-    impl Seek for Small {
-        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-            self.0.seek(to)
-        }
-    }
-
-    impl Disk for Small {
-        fn cut(&mut self, bytes: u64) -> io::Result<()> {
-            self.0.get_mut().truncate(bytes as usize);
-            Ok(())
-        }
-    }
-
-    /// A disk of a computer on which the program is killed behind so many writes.
-    #[derive(Clone)]
-    struct Killed(Cursor<Vec<u8>>, usize);
-
-    impl Killed {
-        fn is_alive(&mut self) -> bool {
-            let alive = self.1 > 0;
-            self.1 = self.1.saturating_sub(1);
-            alive
-        }
-    }
-
-    impl Write for Killed {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            match self.is_alive() {
-                true => self.0.write(bytes),
-                false => Ok(bytes.len()),
-            }
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-
-    impl Seek for Killed {
-        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-            self.0.seek(to)
-        }
-    }
-
-    impl Disk for Killed {
-        fn cut(&mut self, bytes: u64) -> io::Result<()> {
-            if self.is_alive() {
-                self.0.get_mut().truncate(bytes as usize);
-            }
-            Ok(())
-        }
-    }
-
-    /// Catches a file that is lost as a whole because its end is written over while the program is killed.
-    #[test]
-    fn a_program_that_is_killed_at_any_write_loses_the_last_group_only() {
-        for writes in 3..30 {
-            let disk = Killed(Cursor::default(), writes);
-            let mut file = ParquetFile::new(disk, &layout(), &about()).unwrap();
-            let mut wanted = 0;
-            for n in 0..500 {
-                file.row(&entry(n)).unwrap();
-                if n % 100 == 99 {
-                    file.flush().unwrap();
-                    // What was alive behind it has all of it.
-                    wanted = if file.file.1 > 0 { n + 1 } else { wanted };
-                }
-            }
-            let bytes = file.file.0.get_ref();
-            let state = seal::state(&mut Cursor::new(bytes)).unwrap();
-            assert_eq!(state, seal::State::Whole, "{writes}");
-            let kept = rows_of(bytes).map_or(0, |rows| rows.len() as u64);
-            assert!(
-                (wanted..=wanted + 100).contains(&kept),
-                "{writes}: {kept} of {wanted}"
-            );
-        }
-    }
-
-    /// Catches a file that is lost with its disk, or with the program, and not only with its last group.
-    #[test]
-    fn a_file_is_whole_behind_every_group_and_on_a_full_disk() {
-        let whole = {
-            let disk = Small(Cursor::default(), usize::MAX);
-            let mut file = ParquetFile::new(disk, &layout(), &about()).unwrap();
-            for n in 0..300 {
-                file.row(&entry(n)).unwrap();
-                if n % 100 == 99 {
-                    file.flush().unwrap();
-                    assert_rows(&read(file.file.0.get_ref()), n + 1);
-                }
-            }
-            file.file.0.into_inner().len()
-        };
-        for room in (whole / 2..whole).step_by(97) {
-            let disk = Small(Cursor::default(), room);
-            let mut file = ParquetFile::new(disk, &layout(), &about()).unwrap();
-            let mut kept = 0;
-            let full = (0..300).try_for_each(|n| {
-                file.row(&entry(n))?;
-                if n % 100 == 99 {
-                    file.flush()?;
-                    kept = n + 1;
-                }
-                Ok::<(), io::Error>(())
-            });
-            assert_eq!(
-                full.map_err(|e| e.kind()),
-                Err(io::ErrorKind::StorageFull),
-                "{room}"
-            );
-            if kept > 0 {
-                assert_rows(&read(file.file.0.get_ref()), kept);
-            }
-        }
-    }
-}
+mod tests;

@@ -1,7 +1,10 @@
 //! Reads recordings, in every form that `log` and the live page write, row by row.
 
+mod order;
 mod parquet;
 mod text;
+
+pub use order::Misfits;
 
 use super::about::scale_of;
 use super::count::Judge;
@@ -10,6 +13,7 @@ use super::layout::DerivedColumn;
 use super::picture::{Counter, Measurement, Seen};
 use crate::error::GenError;
 use endat_host::units::Scale;
+use order::{Mark, Order};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::fs::File;
@@ -51,6 +55,12 @@ impl Head {
     /// Only one of so many rows is in it.
     pub fn every(&self) -> u64 {
         self.about["every"].as_u64().unwrap_or(1)
+    }
+
+    /// Rows were left out on purpose.
+    fn is_sparse(&self) -> bool {
+        let events = self.about["events"].as_array();
+        self.every() > 1 || events.is_some_and(|names| !names.is_empty())
     }
 }
 
@@ -94,7 +104,9 @@ impl Wrong {
     }
 }
 
-type Take<'a> = &'a mut dyn FnMut(&Head, Parsed) -> Result<(), Wrong>;
+type Take<'a> = &'a mut dyn FnMut(&Head, &mut Parsed) -> Result<(), Wrong>;
+/// What takes the rows of a recording.
+pub type Rows<'a> = &'a mut dyn FnMut(&Head, &Measurement);
 
 /// Refuses a value that is not what its raw position is in units: one of the two has been changed.
 fn check_value(line: u64, channel: usize, cell: &Cell, scale: Option<&Scale>) -> Result<(), Wrong> {
@@ -168,6 +180,11 @@ impl TextTurns {
 #[derive(Default)]
 pub struct Reader {
     head: Option<Head>,
+    /// Rows were left out on purpose, whatever the files say.
+    is_sparse: bool,
+    order: Order,
+    /// The row that is taken.
+    now: Measurement,
     counter: Option<Counter>,
     /// What a measuring step is; empty if the file does not say.
     scales: Vec<Scale>,
@@ -189,33 +206,11 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// What the first file says before its rows; none if there was none.
-    pub fn head(&self) -> Option<&Head> {
-        self.head.as_ref()
-    }
-
-    /// What is to be told beside the result.
-    pub fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
-    /// Reads a file.
-    pub fn file(
-        &mut self,
-        path: &Path,
-        take: &mut dyn FnMut(&Head, Measurement),
-    ) -> Result<(), GenError> {
-        self.rows(path, &mut |head, row| {
-            take(head, row);
-            Ok(())
-        })
-    }
-
-    /// The same, as long as rows are taken.
+    /// Reads a file, as long as rows are taken.
     fn rows(
         &mut self,
         path: &Path,
-        take: &mut dyn FnMut(&Head, Measurement) -> Result<(), Wrong>,
+        take: &mut dyn FnMut(&Head, &Measurement) -> Result<(), Wrong>,
     ) -> Result<(), GenError> {
         let at = |wrong: Wrong| {
             let place = match wrong.line {
@@ -250,12 +245,12 @@ impl Reader {
         self.follows = (self.last.as_deref()).is_some_and(|last| is_next(path, last));
         let mut is_first = true;
         let mut notes = Vec::new();
-        let mut next = |head: &Head, row: Parsed| {
+        let mut next = |head: &Head, row: &mut Parsed| {
             if std::mem::take(&mut is_first) {
                 self.begin(head)?;
             }
-            let measurement = self.measurement(row)?;
-            take(self.head.as_ref().unwrap_or(head), measurement)
+            self.measure(path, row)?;
+            take(self.head.as_ref().unwrap_or(head), &self.now)
         };
         let read = match &begin[..count] == b"PAR1" {
             true => parquet::read(file, &mut next),
@@ -290,6 +285,7 @@ impl Reader {
     /// Another file begins.
     fn begin(&mut self, head: &Head) -> Result<(), Wrong> {
         self.begins_file = true;
+        self.is_sparse |= head.is_sparse();
         let Some(first) = &self.head else {
             let scales = head.scales();
             self.counter = scales.map(|all| {
@@ -306,7 +302,10 @@ impl Reader {
             let text = "has other columns than the file before it; give files of one recording";
             return Err(Wrong::at(0, text));
         }
+        let offset_s = self.offset_s;
         let (Some(begin), Some(now)) = (self.start, head.start()) else {
+            // Nobody knows how long nothing was recorded.
+            self.order.interrupt();
             return Ok(());
         };
         // A recording that was begun again later has a time of its own.
@@ -318,11 +317,15 @@ impl Reader {
             )
         })?;
         self.offset_s = since.as_secs_f64();
+        if self.offset_s != offset_s {
+            self.order.interrupt();
+        }
         self.follows = false;
         Ok(())
     }
 
-    fn measurement(&mut self, row: Parsed) -> Result<Measurement, Wrong> {
+    /// Makes a measurement of a row.
+    fn measure(&mut self, path: &Path, row: &mut Parsed) -> Result<(), Wrong> {
         let mut time_s = row.time_s + self.offset_s;
         if let (true, true, Some(last)) = (self.begins_file, self.follows, self.last_s) {
             if time_s < last {
@@ -345,7 +348,8 @@ impl Reader {
             );
             return Err(Wrong::at(row.line, text));
         }
-        if row.trigger.is_some() {
+        let mut fits = true;
+        if let Some(trigger) = row.trigger {
             if let Some(last) = self.last_s.filter(|last| time_s < *last) {
                 let text = format!(
                     "time_s = {time_s}: is before that of the row before it, {last}: another recording begins here; give files of one recording (text that `log --resume` goes on with needs its number, or --about)"
@@ -353,13 +357,20 @@ impl Reader {
                 return Err(Wrong::at(row.line, text));
             }
             self.before_s = self.last_s.replace(time_s);
+            let mark = Mark {
+                trigger,
+                time_s,
+                missing: row.missing,
+            };
+            let place = || format!("{}:{}", path.display(), row.line);
+            fits = self.order.step(mark, self.is_sparse, &place);
         }
-        let mut seen = Vec::with_capacity(row.cells.len());
         let units = self.head.as_ref().map_or(&[][..], |h| &h.units);
         for (n, cell) in row.cells.iter().enumerate() {
             check_value(row.line, n, cell, self.scales.get(n))?;
         }
-        for (n, cell) in row.cells.into_iter().enumerate() {
+        self.now.cells.clear();
+        for (n, cell) in row.cells.drain(..).enumerate() {
             let position = match (&mut self.counter, cell.raw, cell.value) {
                 _ if !cell.fresh => None,
                 (Some(counter), Some(raw), _) => counter.position(n, raw),
@@ -369,21 +380,20 @@ impl Reader {
                 }
                 _ => None,
             };
-            seen.push(Seen {
+            self.now.cells.push(Seen {
                 raw: cell.raw,
                 position,
                 fresh: cell.fresh,
                 cause: cell.cause,
             });
         }
-        Ok(Measurement {
-            begins_file: std::mem::take(&mut self.begins_file),
-            trigger: row.trigger,
-            time_s,
-            missing: row.missing,
-            cells: seen,
-            derived: row.derived,
-        })
+        self.now.begins_file = std::mem::take(&mut self.begins_file);
+        self.now.trigger = row.trigger;
+        self.now.time_s = time_s;
+        self.now.missing = row.missing;
+        self.now.fits = fits;
+        std::mem::swap(&mut self.now.derived, &mut row.derived);
+        Ok(())
     }
 }
 
@@ -401,17 +411,29 @@ pub fn first(path: &Path) -> Result<Option<Head>, GenError> {
     }
 }
 
-/// Reads all files; what came before their rows, and what is to be told. Nothing is no recording.
-pub fn read_all(
-    files: &[PathBuf],
-    take: &mut dyn FnMut(&Head, Measurement),
-) -> Result<(Head, Vec<String>), GenError> {
-    let mut reader = Reader::default();
+/// What has been found in a recording beside its rows.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// What the first file says before its rows.
+    pub head: Head,
+    /// What is to be told.
+    pub notes: Vec<String>,
+    /// Rows that do not fit those around them.
+    pub misfits: Misfits,
+}
+
+/// Reads all files; nothing is no recording. `is_sparse`: rows were left out on purpose, whatever the files say.
+pub fn read_all(files: &[PathBuf], is_sparse: bool, take: Rows<'_>) -> Result<Found, GenError> {
+    let mut reader = Reader {
+        is_sparse,
+        ..Reader::default()
+    };
     let mut rows = 0u64;
     for file in files {
-        reader.file(file, &mut |head, row| {
+        reader.rows(file, &mut |head, row| {
             rows += 1;
             take(head, row);
+            Ok(())
         })?;
     }
     if rows == 0 {
@@ -421,5 +443,9 @@ pub fn read_all(
             names.join(", ")
         )));
     }
-    Ok((reader.head.unwrap_or_default(), reader.notes))
+    Ok(Found {
+        head: reader.head.unwrap_or_default(),
+        notes: reader.notes,
+        misfits: reader.order.misfits().clone(),
+    })
 }

@@ -1,4 +1,4 @@
-//! Rows of Parquet, a group at a time.
+//! Rows of Parquet. One thread decodes some thousand rows of every column while another one takes those before them.
 
 use super::super::about::KEY;
 use super::super::layout::{of_channel, DerivedColumn, INFOS};
@@ -11,6 +11,8 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::fs::File;
+use std::sync::mpsc::{sync_channel, Receiver, SyncSender};
+use std::thread;
 
 fn foreign(why: &str) -> Wrong {
     Wrong::at(0, format!("{why}; give a file of `log --format parquet`"))
@@ -20,29 +22,42 @@ fn broken(error: ParquetError) -> Wrong {
     foreign(&format!("cannot be read as Parquet: {error}"))
 }
 
-/// Values of a column of a group, none where a row has none.
-enum Values {
-    Long(Vec<Option<i64>>),
-    Double(Vec<Option<f64>>),
-    Flag(Vec<Option<bool>>),
-    Word(Vec<Option<Cow<'static, str>>>),
+/// Rows that are decoded at once, and how many times as many wait to be taken.
+const BATCH: usize = 1 << 14;
+const BATCHES: usize = 4;
+
+/// Values of a column, of the rows that have one.
+struct Cells<T> {
+    values: Vec<T>,
+    /// 1 where a row has one; empty if every row has.
+    levels: Vec<i16>,
+    /// The value of the next row that has one.
+    at: usize,
 }
 
-/// Each row's value, of those that are there and of where they are.
-fn spread<T>(values: Vec<T>, levels: &[i16], rows: usize) -> Result<Vec<Option<T>>, Wrong> {
-    let mut values = values.into_iter();
-    let all: Vec<Option<T>> = match levels.is_empty() {
-        true => values.map(Some).collect(),
-        false => (levels.iter())
-            .map(|level| (*level > 0).then(|| values.next()).flatten())
-            .collect(),
-    };
-    match all.len() == rows {
-        true => Ok(all),
-        false => Err(foreign(
-            "is damaged: a column has another number of rows than the others",
-        )),
+impl<T: Clone> Cells<T> {
+    /// The value of a row; rows are asked for one after the other.
+    fn next(&mut self, row: usize) -> Option<T> {
+        if !self.levels.is_empty() && self.levels[row] == 0 {
+            return None;
+        }
+        self.at += 1;
+        self.values.get(self.at - 1).cloned()
     }
+}
+
+/// Values of a column of some rows.
+enum Values {
+    Long(Cells<i64>),
+    Double(Cells<f64>),
+    Flag(Cells<bool>),
+    Word(Cells<Cow<'static, str>>),
+}
+
+/// Some rows.
+struct Batch {
+    rows: usize,
+    columns: Vec<Values>,
 }
 
 macro_rules! column {
@@ -56,26 +71,78 @@ macro_rules! column {
                 (more, ..) => done += more,
             }
         }
-        spread(values, &levels, $rows)?
+        if done != $rows {
+            return Err(foreign(
+                "is damaged: a column has another number of rows than the others",
+            ));
+        }
+        Cells {
+            values,
+            levels,
+            at: 0,
+        }
     }};
 }
 
-fn values(group: &dyn RowGroupReader, column: usize, rows: usize) -> Result<Values, Wrong> {
-    Ok(match group.get_column_reader(column).map_err(broken)? {
-        ColumnReader::Int64ColumnReader(mut reader) => Values::Long(column!(reader, rows)),
-        ColumnReader::Int32ColumnReader(mut reader) => {
-            let all: Vec<Option<i32>> = column!(reader, rows);
-            Values::Long(all.into_iter().map(|v| v.map(i64::from)).collect())
+/// Names of a column: mostly the one that came before.
+fn words(all: Cells<ByteArray>) -> Cells<Cow<'static, str>> {
+    let mut last: Option<(ByteArray, Cow<'static, str>)> = None;
+    let mut word = |bytes: ByteArray| match &last {
+        Some((known, name)) if *known == bytes => name.clone(),
+        _ => {
+            let name: Cow<'static, str> = bytes.as_utf8().map_or("unknown".into(), cause);
+            last = Some((bytes, name.clone()));
+            name
         }
-        ColumnReader::DoubleColumnReader(mut reader) => Values::Double(column!(reader, rows)),
-        ColumnReader::BoolColumnReader(mut reader) => Values::Flag(column!(reader, rows)),
-        ColumnReader::ByteArrayColumnReader(mut reader) => {
-            let all: Vec<Option<ByteArray>> = column!(reader, rows);
-            let word = |w: ByteArray| w.as_utf8().map(cause).unwrap_or("unknown".into());
-            Values::Word(all.into_iter().map(|w| w.map(word)).collect())
+    };
+    Cells {
+        values: all.values.into_iter().map(&mut word).collect(),
+        levels: all.levels,
+        at: 0,
+    }
+}
+
+fn values(reader: &mut ColumnReader, rows: usize) -> Result<Values, Wrong> {
+    Ok(match reader {
+        ColumnReader::Int64ColumnReader(reader) => Values::Long(column!(reader, rows)),
+        ColumnReader::Int32ColumnReader(reader) => {
+            let all: Cells<i32> = column!(reader, rows);
+            Values::Long(Cells {
+                values: all.values.into_iter().map(i64::from).collect(),
+                levels: all.levels,
+                at: 0,
+            })
         }
+        ColumnReader::DoubleColumnReader(reader) => Values::Double(column!(reader, rows)),
+        ColumnReader::BoolColumnReader(reader) => Values::Flag(column!(reader, rows)),
+        ColumnReader::ByteArrayColumnReader(reader) => Values::Word(words(column!(reader, rows))),
         _ => return Err(foreign("has a column of another kind than a recording")),
     })
+}
+
+/// Decodes all rows, as long as somebody takes them.
+fn decode(reader: &dyn FileReader, give: &SyncSender<Result<Batch, Wrong>>) -> Result<(), Wrong> {
+    let columns = reader
+        .metadata()
+        .file_metadata()
+        .schema_descr()
+        .num_columns();
+    for n in 0..reader.num_row_groups() {
+        let group: Box<dyn RowGroupReader + '_> = reader.get_row_group(n).map_err(broken)?;
+        let mut left = usize::try_from(group.metadata().num_rows()).unwrap_or_default();
+        let readers = (0..columns).map(|column| group.get_column_reader(column));
+        let mut readers = readers.collect::<Result<Vec<_>, _>>().map_err(broken)?;
+        while left > 0 {
+            let rows = left.min(BATCH);
+            let columns = readers.iter_mut().map(|reader| values(reader, rows));
+            let columns = columns.collect::<Result<Vec<_>, _>>()?;
+            if give.send(Ok(Batch { rows, columns })).is_err() {
+                return Ok(());
+            }
+            left -= rows;
+        }
+    }
+    Ok(())
 }
 
 /// Where columns are.
@@ -126,9 +193,9 @@ impl Columns {
     }
 }
 
-fn long(values: &Values, row: usize) -> Result<Option<u64>, Wrong> {
+fn long(values: &mut Values, row: usize) -> Result<Option<u64>, Wrong> {
     match values {
-        Values::Long(all) => Ok(all[row].and_then(|v| u64::try_from(v).ok())),
+        Values::Long(all) => Ok(all.next(row).and_then(|v| u64::try_from(v).ok())),
         _ => Err(foreign("is no recording: a column of numbers is none")),
     }
 }
@@ -173,52 +240,77 @@ pub(super) fn read(mut file: File, take: Take<'_>) -> Result<Head, Wrong> {
     let columns = meta.schema_descr().columns().iter();
     let names: Vec<String> = columns.map(|c| c.name().to_owned()).collect();
     let columns = Columns::of(&names, &mut head)?;
-    let mut line = 0;
-    for n in 0..reader.num_row_groups() {
-        let group = reader.get_row_group(n).map_err(broken)?;
-        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or_default();
-        let all: Vec<Values> = (0..names.len())
-            .map(|column| values(group.as_ref(), column, rows))
-            .collect::<Result<_, _>>()?;
-        for row in 0..rows {
-            line += 1;
-            take(&head, parsed(&columns, &all, row, line, system_hz)?)?;
-        }
-    }
+    let (give, batches) = sync_channel(BATCHES);
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            if let Err(wrong) = decode(&reader, &give) {
+                // Where nobody takes rows any more, nobody wants to know.
+                let _ = give.send(Err(wrong));
+            }
+        });
+        rows(batches, &columns, &head, system_hz, take)
+    })?;
     Ok(head)
 }
 
-fn parsed(
+/// Takes the rows of all batches.
+fn rows(
+    batches: Receiver<Result<Batch, Wrong>>,
     columns: &Columns,
-    all: &[Values],
-    row: usize,
-    line: u64,
+    head: &Head,
     system_hz: f64,
-) -> Result<Parsed, Wrong> {
-    let cells = columns.channels.iter().map(|[raw, fresh, cause]| {
-        let (Values::Flag(fresh), Values::Word(cause)) = (&all[*fresh], &all[*cause]) else {
+    take: Take<'_>,
+) -> Result<(), Wrong> {
+    let mut parsed = Parsed::default();
+    for batch in batches {
+        let Batch {
+            rows,
+            columns: mut all,
+        } = batch?;
+        for row in 0..rows {
+            parsed.line += 1;
+            parse(columns, &mut all, row, system_hz, &mut parsed)?;
+            take(head, &mut parsed)?;
+        }
+    }
+    Ok(())
+}
+
+fn parse(
+    columns: &Columns,
+    all: &mut [Values],
+    row: usize,
+    system_hz: f64,
+    parsed: &mut Parsed,
+) -> Result<(), Wrong> {
+    parsed.cells.clear();
+    for [raw, fresh, cause] in &columns.channels {
+        let raw = long(&mut all[*raw], row)?;
+        let Values::Flag(fresh) = &mut all[*fresh] else {
             return Err(foreign("is no recording: a column is of another kind"));
         };
-        Ok(Cell {
-            raw: long(&all[*raw], row)?,
+        let fresh = fresh.next(row).unwrap_or(false);
+        let Values::Word(cause) = &mut all[*cause] else {
+            return Err(foreign("is no recording: a column is of another kind"));
+        };
+        parsed.cells.push(Cell {
+            raw,
             value: None,
             turns: None,
-            fresh: fresh[row].unwrap_or(false),
-            cause: cause[row].clone().unwrap_or_default(),
-        })
-    });
-    let derived = columns.derived.iter().map(|n| match &all[*n] {
-        Values::Double(all) => all[row],
-        Values::Long(all) => all[row].map(|v| v as f64),
-        _ => None,
-    });
-    let cycles = long(&all[columns.cycles], row)?;
-    Ok(Parsed {
-        line,
-        trigger: long(&all[columns.trigger], row)?,
-        time_s: cycles.unwrap_or(0) as f64 / system_hz,
-        missing: long(&all[columns.missing], row)?.unwrap_or(0),
-        cells: cells.collect::<Result<_, _>>()?,
-        derived: derived.collect(),
-    })
+            fresh,
+            cause: cause.next(row).unwrap_or_default(),
+        });
+    }
+    parsed.derived.clear();
+    for n in &columns.derived {
+        parsed.derived.push(match &mut all[*n] {
+            Values::Double(all) => all.next(row),
+            Values::Long(all) => all.next(row).map(|v| v as f64),
+            _ => None,
+        });
+    }
+    parsed.trigger = long(&mut all[columns.trigger], row)?;
+    parsed.time_s = long(&mut all[columns.cycles], row)?.unwrap_or(0) as f64 / system_hz;
+    parsed.missing = long(&mut all[columns.missing], row)?.unwrap_or(0);
+    Ok(())
 }

@@ -40,7 +40,7 @@ impl<R: BufRead> Lines<R> {
         }
         let text = std::str::from_utf8(&self.buffer);
         let text = text.map_err(|_| Wrong::at(self.line, foreign("is no text")))?;
-        Ok(Some((self.line, text.trim_end())))
+        Ok(Some((self.line, text.trim_end_matches(['\r', '\n']))))
     }
 }
 
@@ -63,13 +63,20 @@ pub(super) fn read(
     let mut head = Head::default();
     let mut columns = None;
     let mut is_json = false;
+    let mut row = Parsed::default();
     while let Some((line, text)) = lines.next()? {
         // A mark of some editors, an empty line at the end.
         let text = text.trim_start_matches('\u{feff}');
-        if text.is_empty() {
+        let is_nothing = |c: char| c.is_whitespace() || SEPARATORS.contains(&c);
+        if text.chars().all(is_nothing) {
             continue;
         }
-        if let Some(about) = text.strip_prefix('#').filter(|_| columns.is_none()) {
+        if columns.is_none() && is_separator(text) {
+            continue;
+        }
+        // A spreadsheet puts into quotes what has some.
+        let begin = text.trim_start_matches('"');
+        if let Some(about) = begin.strip_prefix('#').filter(|_| columns.is_none()) {
             // Comments of others say nothing.
             head.about = serde_json::from_str(about.trim()).unwrap_or(head.about);
             continue;
@@ -83,7 +90,10 @@ pub(super) fn read(
         }
         match &columns {
             None => columns = Some(Columns::of(line, text, &mut head)?),
-            Some(columns) => take(&head, columns.row(line, text)?)?,
+            Some(columns) => {
+                columns.row(line, text, &mut row)?;
+                take(&head, &mut row)?;
+            }
         }
     }
     if lines.is_cut {
@@ -112,6 +122,8 @@ struct ChannelColumns {
 
 /// Where columns are.
 struct Columns {
+    /// Between two fields; where that is no comma, one may be in a number.
+    separator: char,
     names: Vec<String>,
     trigger: usize,
     time_s: usize,
@@ -120,14 +132,31 @@ struct Columns {
     derived: Vec<usize>,
 }
 
-fn fields(text: &str) -> impl Iterator<Item = &str> {
-    // No field of a recording has a comma in it; other programs may have put some into quotes.
-    text.split(',').map(|field| field.trim().trim_matches('"'))
+/// What may be between two fields: spreadsheets take another one where the comma is in numbers.
+const SEPARATORS: [char; 3] = [',', ';', '\t'];
+
+fn fields(text: &str, separator: char) -> impl Iterator<Item = &str> {
+    // No field of a recording has a separator in it; other programs may have put some into quotes.
+    let all = text.split(separator);
+    all.map(|field| field.trim().trim_matches('"'))
+}
+
+/// The line before the head by which some spreadsheets know the separator.
+fn is_separator(text: &str) -> bool {
+    let begin = text.trim_start_matches('"').get(..4);
+    begin.is_some_and(|begin| begin.eq_ignore_ascii_case("sep="))
+}
+
+/// The separator of a head line.
+fn separator_of(text: &str) -> char {
+    let is_it = |separator: &char| fields(text, *separator).any(|name| name == "trigger");
+    SEPARATORS.into_iter().find(is_it).unwrap_or(SEPARATORS[0])
 }
 
 impl Columns {
     fn of(line: u64, text: &str, head: &mut Head) -> Result<Self, Wrong> {
-        let names: Vec<String> = fields(text).map(str::to_owned).collect();
+        let separator = separator_of(text);
+        let names: Vec<String> = fields(text, separator).map(str::to_owned).collect();
         let find = |name: &str| {
             let place = names.iter().position(|n| n == name);
             let why = || Wrong::at(line, foreign(&format!("there is no column {name}")));
@@ -176,6 +205,7 @@ impl Columns {
             head.derived.push(column);
         }
         Ok(Self {
+            separator,
             names,
             trigger,
             time_s,
@@ -185,8 +215,9 @@ impl Columns {
         })
     }
 
-    fn row(&self, line: u64, text: &str) -> Result<Parsed, Wrong> {
-        let all: Vec<&str> = fields(text).collect();
+    fn row(&self, line: u64, text: &str, row: &mut Parsed) -> Result<(), Wrong> {
+        let mut all: Vec<&str> = Vec::with_capacity(self.names.len());
+        all.extend(fields(text, self.separator));
         if all.len() != self.names.len() {
             let text = format!(
                 "has {} fields, the head line {}; delete the line if it is damaged",
@@ -206,16 +237,22 @@ impl Columns {
             "" => Ok(None),
             text => text.parse::<u64>().map(Some).map_err(|_| wrong(n)),
         };
-        let number = |n: usize| match all[n] {
-            "" => Ok(None),
-            text => match text.parse::<f64>() {
+        let number = |n: usize| {
+            let text = all[n];
+            let parsed = match self.separator != ',' && text.contains(',') {
+                true => text.replacen(',', ".", 1).parse::<f64>(),
+                false if text.is_empty() => return Ok(None),
+                false => text.parse::<f64>(),
+            };
+            match parsed {
                 Ok(x) if x.is_finite() => Ok(Some(x)),
                 _ => Err(wrong(n)),
-            },
+            }
         };
         let needed = |n: usize| wrong(n);
-        let cells = self.channels.iter().enumerate().map(|(n, at)| {
-            Ok(Cell {
+        row.cells.clear();
+        for (n, at) in self.channels.iter().enumerate() {
+            row.cells.push(Cell {
                 raw: whole(at.raw)?,
                 value: number(at.value)?,
                 turns: whole(at.turns)?,
@@ -225,20 +262,17 @@ impl Columns {
                     _ => return Err(wrong(at.fresh)),
                 },
                 cause: known_cause(line, n, all[at.cause])?,
-            })
-        });
-        Ok(Parsed {
-            line,
-            trigger: whole(self.trigger)?,
-            time_s: number(self.time_s)?.ok_or_else(|| needed(self.time_s))?,
-            missing: whole(self.missing)?.ok_or_else(|| needed(self.missing))?,
-            cells: cells.collect::<Result<_, _>>()?,
-            derived: self
-                .derived
-                .iter()
-                .map(|n| number(*n))
-                .collect::<Result<_, _>>()?,
-        })
+            });
+        }
+        row.line = line;
+        row.trigger = whole(self.trigger)?;
+        row.time_s = number(self.time_s)?.ok_or_else(|| needed(self.time_s))?;
+        row.missing = whole(self.missing)?.ok_or_else(|| needed(self.missing))?;
+        row.derived.clear();
+        for n in &self.derived {
+            row.derived.push(number(*n)?);
+        }
+        Ok(())
     }
 }
 
@@ -286,7 +320,7 @@ fn json_line(line: u64, text: &str, head: &mut Head, take: Take<'_>) -> Result<(
             cause: known_cause(line, n, c["cause"].as_str().ok_or_else(|| lacks("cause"))?)?,
         })
     });
-    let row = Parsed {
+    let mut row = Parsed {
         line,
         trigger: object["trigger"].as_u64(),
         time_s: object["time_s"].as_f64().ok_or_else(|| lacks("time_s"))?,
@@ -296,5 +330,5 @@ fn json_line(line: u64, text: &str, head: &mut Head, take: Take<'_>) -> Result<(
             .map(|one| derived.and_then(|d| d.get(&one.name)?.as_f64()))
             .collect(),
     };
-    take(head, row)
+    take(head, &mut row)
 }

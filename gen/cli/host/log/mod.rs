@@ -142,7 +142,11 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         // A reader that has gone away (`| head`) is the end, not an error.
         Err(Failure::Write(e)) if e.kind() == io::ErrorKind::BrokenPipe => messages.clear(),
         Err(Failure::Write(e)) => {
-            let text = format!("{}: cannot write: {e}; is the disk full?", recorder.name());
+            let why = match e.kind() {
+                io::ErrorKind::FileTooLarge => "a file of this size is not allowed (ulimit -f); raise the limit, or begin files that are smaller with --file-mb".into(),
+                _ => format!("{e}; is the disk full?"),
+            };
+            let text = format!("{}: cannot write: {why}", recorder.name());
             fail(GenError::input(text), &mut messages);
         }
         Err(Failure::Card(e)) => fail(e, &mut messages),

@@ -250,10 +250,7 @@ impl LogArgs {
             about_in_text: self.about,
             derivation,
             keep,
-            limits: Limits {
-                bytes: checked.bytes,
-                cycles: checked.minutes.map(minutes),
-            },
+            limits: Limits::of(checked.bytes, checked.minutes.map(minutes)),
             drawing,
         })
     }
