@@ -1,5 +1,7 @@
 //! The live page: what it is answered, whom it refuses, what becomes of it when a card goes, and how it is in a browser.
 
+mod crowd;
+
 use crate::hosts::{quick_service_port, slow_card, Served, SERVICE};
 use crate::program::{self, begun, Dir};
 use crate::tools;

@@ -1,23 +1,11 @@
-//! HTTP as far as a page of this program needs it. Nobody who is slow, silent or rude keeps another one waiting.
+//! HTTP as far as a page of this program needs it: requests out of bytes, and bytes out of answers.
 
 use std::collections::BTreeMap;
-use std::io::{self, Read, Write};
-use std::net::{TcpListener, TcpStream};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::Arc;
-use std::thread;
-use std::time::{Duration, Instant};
 
 /// Bytes of a request's head, and of its body.
 const HEAD_MAX: usize = 8_192;
 const BODY_MAX: usize = 4_096;
 const HEADERS_MAX: usize = 64;
-/// A request, and its answer, have this long.
-const PATIENCE: Duration = Duration::from_secs(5);
-/// Connections at once.
-const CONNECTIONS: usize = 64;
-/// Between two looks for a new connection.
-const LOOK: Duration = Duration::from_millis(5);
 
 /// A request.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -94,6 +82,17 @@ fn parse(head: &[u8]) -> Result<Option<(Request, usize, usize)>, String> {
         httparse::Status::Partial => return Ok(None),
         httparse::Status::Complete(length) => length,
     };
+    // What two of them say nobody knows, and somebody between may take the other one.
+    for name in ["host", "content-length", "transfer-encoding"] {
+        let is_it = |h: &&httparse::Header<'_>| h.name.eq_ignore_ascii_case(name);
+        let most = if name == "transfer-encoding" { 0 } else { 1 };
+        if parsed.headers.iter().filter(is_it).count() > most {
+            return Err(match most {
+                0 => "Transfer-Encoding: is not taken; send Content-Length".to_owned(),
+                _ => format!("{name}: is there twice; send it once"),
+            });
+        }
+    }
     let target = parsed.path.unwrap_or_default();
     let (path, query) = target.split_once('?').unwrap_or((target, ""));
     let pairs = query.split('&').filter(|pair| !pair.is_empty());
@@ -122,50 +121,29 @@ fn parse(head: &[u8]) -> Result<Option<(Request, usize, usize)>, String> {
     Ok(Some((request, length, body)))
 }
 
-/// Reads a request; an answer if it is none. A connection on which nothing has come needs none: browsers open some in advance, and would take
-/// one for the answer to what they ask later.
-fn read(stream: &mut TcpStream) -> Result<Request, Option<Response>> {
-    let end = Instant::now() + PATIENCE;
-    let mut bytes = Vec::new();
-    let mut buffer = [0; 1_024];
-    loop {
-        match parse(&bytes) {
-            Err(why) => {
-                return Err(Some(Response::text(
-                    400,
-                    format!("request: {why}; this server speaks HTTP/1.1"),
-                )))
-            }
-            Ok(Some((_, _, body))) if body > BODY_MAX => {
-                return Err(Some(Response::text(
-                    413,
-                    format!("body = {body} bytes: too long, at most {BODY_MAX}; what is asked for stands in the query"),
-                )));
-            }
-            Ok(Some((request, head, body))) if bytes.len() >= head + body => return Ok(request),
-            Ok(None) if bytes.len() > HEAD_MAX => {
-                return Err(Some(Response::text(
-                    431,
-                    format!("head: too long, at most {HEAD_MAX} bytes; send fewer headers"),
-                )));
-            }
-            Ok(_) => {}
-        }
-        let late = || {
-            (!bytes.is_empty()).then(|| {
-                Response::text(408, "request: has not come whole in time; send it at once")
-            })
-        };
-        let left = end.saturating_duration_since(Instant::now());
-        if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
-            return Err(late());
-        }
-        match stream.read(&mut buffer) {
-            Ok(0) => return Err(None),
-            Ok(count) => bytes.extend_from_slice(&buffer[..count]),
-            Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
-            Err(_) => return Err(late()),
-        }
+/// The request that begins with these bytes; none while it is not whole, and an answer if it is none.
+pub fn request(bytes: &[u8]) -> Result<Option<Request>, Response> {
+    let too_long = || {
+        Response::text(
+            431,
+            format!("head: too long, at most {HEAD_MAX} bytes; send fewer headers"),
+        )
+    };
+    let end = bytes.windows(4).position(|four| four == b"\r\n\r\n");
+    if end.unwrap_or(bytes.len()) > HEAD_MAX {
+        return Err(too_long());
+    }
+    match parse(bytes) {
+        Err(why) => Err(Response::text(
+            400,
+            format!("request: {why}; this server speaks HTTP/1.1"),
+        )),
+        Ok(Some((_, _, body))) if body > BODY_MAX => Err(Response::text(
+            413,
+            format!("body = {body} bytes: too long, at most {BODY_MAX}; what is asked for stands in the query"),
+        )),
+        Ok(Some((request, head, body))) if bytes.len() >= head + body => Ok(Some(request)),
+        Ok(_) => Ok(None),
     }
 }
 
@@ -174,7 +152,8 @@ const ALWAYS: &str = "Connection: close\r\nCache-Control: no-store\r\nX-Content-
     Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n\
     Content-Security-Policy: default-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'\r\n";
 
-fn write(stream: &mut TcpStream, response: &Response) -> io::Result<()> {
+/// An answer as it goes out.
+pub fn bytes(response: &Response) -> Vec<u8> {
     let Response {
         status,
         kind,
@@ -189,67 +168,7 @@ fn write(stream: &mut TcpStream, response: &Response) -> io::Result<()> {
         "HTTP/1.1 {status} \r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{more}{ALWAYS}\r\n",
         body.len()
     );
-    let all = [head.as_bytes(), body].concat();
-    let end = Instant::now() + PATIENCE;
-    let mut rest = all.as_slice();
-    while !rest.is_empty() {
-        let left = end.saturating_duration_since(Instant::now());
-        if left.is_zero() {
-            return Err(io::ErrorKind::TimedOut.into());
-        }
-        stream.set_write_timeout(Some(left))?;
-        let count = stream.write(rest)?;
-        rest = &rest[count..];
-    }
-    stream.flush()
-}
-
-/// A connection that is counted.
-struct Place(Arc<AtomicUsize>);
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
-    }
-}
-
-/// Answers requests until `stop`.
-pub fn serve(
-    listener: &TcpListener,
-    stop: &AtomicBool,
-    answer: impl Fn(&Request) -> Response + Send + Sync + 'static,
-) -> io::Result<()> {
-    listener.set_nonblocking(true)?;
-    let answer = Arc::new(answer);
-    let open = Arc::new(AtomicUsize::new(0));
-    while !stop.load(Ordering::Relaxed) {
-        let Ok((mut stream, _)) = listener.accept() else {
-            thread::sleep(LOOK);
-            continue;
-        };
-        // It inherits that on some systems.
-        let _ = stream.set_nonblocking(false);
-        if open.load(Ordering::Relaxed) >= CONNECTIONS {
-            let _ = stream.set_write_timeout(Some(LOOK));
-            let _ = write(
-                &mut stream,
-                &Response::text(503, "request: too many at once; try again"),
-            );
-            continue;
-        }
-        open.fetch_add(1, Ordering::Relaxed);
-        let (answer, place) = (answer.clone(), Place(open.clone()));
-        thread::spawn(move || {
-            let _place = place;
-            let response = match read(&mut stream) {
-                Ok(request) => Some(answer(&request)),
-                Err(response) => response,
-            };
-            // One that has gone needs no answer.
-            let _ = response.map(|response| write(&mut stream, &response));
-        });
-    }
-    Ok(())
+    [head.as_bytes(), body].concat()
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 
 mod api;
 mod collect;
+mod connections;
 mod guard;
 mod history;
 mod http;
@@ -157,7 +158,7 @@ pub fn run(arguments: &ViewArgs) -> Result<Outcome, GenError> {
         may_be_silent,
         rehearses: arguments.rehearse,
     };
-    http::serve(&listener, &stop, move |request| api.answer(request)).map_err(fail)?;
+    connections::serve(&listener, &stop, move |request| api.answer(request)).map_err(fail)?;
     // The thread has seen the same flag; it leaves the card quiet.
     let _ = collecting.join();
     let ended = shared.state().end_recording();
