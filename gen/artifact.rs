@@ -3,8 +3,9 @@
 use crate::error::GenError;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 /// Name of the list of all other files.
 pub const MANIFEST: &str = "MANIFEST";
@@ -180,10 +181,47 @@ pub fn leftovers(folder: &Path, artifacts: &[Artifact]) -> Leftovers {
 
 /// A file waiting under a temporary name beside its place.
 struct Staged {
+    /// It is locked as long as it is open: no other emission takes it for a file that is left over.
+    _held: File,
     from: PathBuf,
     to: PathBuf,
     /// Its place as the user named it.
     shown: PathBuf,
+}
+
+/// Between the name of a file and the process that writes it, in a temporary name.
+const PART: &str = ".part";
+
+/// A new file under a temporary name.
+fn stage(from: &Path, text: &str) -> io::Result<File> {
+    let mut file = File::create(from)?;
+    // Where there are no locks, nothing is ever taken for left over.
+    let _ = file.try_lock();
+    file.write_all(text.as_bytes())?;
+    Ok(file)
+}
+
+/// Removes what emissions of these artefacts have left that were killed: their temporary files which nobody holds.
+fn sweep(folder: &Path, artifacts: &[Artifact]) {
+    let names: BTreeSet<&str> = artifacts.iter().map(|a| a.path.as_str()).collect();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_str().and_then(|name| name.strip_prefix('.'));
+        let Some((of, process)) = name.and_then(|name| name.rsplit_once(PART)) else {
+            continue;
+        };
+        let is_process = !process.is_empty() && process.bytes().all(|b| b.is_ascii_digit());
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if !is_process || !is_file || !names.contains(of) {
+            continue;
+        }
+        let path = entry.path();
+        let file = File::options().write(true).open(&path);
+        if file.is_ok_and(|file| file.try_lock().is_ok()) {
+            // One that cannot be removed does no harm.
+            let _ = fs::remove_file(&path);
+        }
+    }
 }
 
 /// Writes the artefacts that differ and returns their paths; after an error no file has changed. `remedy` ends a message.
@@ -203,6 +241,7 @@ pub fn write_unless(
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Vec<PathBuf>, GenError> {
     fs::create_dir_all(folder).map_err(|e| GenError::io("make the folder", folder, &e, remedy))?;
+    sweep(folder, artifacts);
     let mut staged: Vec<Staged> = Vec::new();
     for artifact in artifacts {
         let path = folder.join(&artifact.path);
@@ -212,14 +251,17 @@ pub fn write_unless(
             }
             // A link stays, and what it leads to is renewed.
             let to = fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
-            let from = to.with_file_name(format!(".{}.part{}", artifact.path, std::process::id()));
-            let written = fs::write(&from, &artifact.text);
+            let part = format!(".{}{PART}{}", artifact.path, std::process::id());
+            let from = to.with_file_name(part);
+            let written = stage(&from, &artifact.text);
+            let held = written.inspect_err(|_| drop(fs::remove_file(&from)))?;
             staged.push(Staged {
+                _held: held,
                 from,
                 to,
                 shown: path.clone(),
             });
-            written
+            Ok(())
         });
         if let Err(e) = written {
             discard(&staged);
@@ -235,7 +277,9 @@ pub fn write_unless(
     }
     // From here on everything is written: a few renames, which nobody waits for.
     for index in 0..staged.len() {
-        let Staged { from, to, shown } = &staged[index];
+        let Staged {
+            from, to, shown, ..
+        } = &staged[index];
         if let Err(e) = fs::rename(from, to) {
             discard(&staged[index..]);
             return Err(GenError::io("write", shown, &e, remedy));

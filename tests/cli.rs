@@ -558,3 +558,33 @@ fn a_configuration_comes_on_standard_input() {
     assert!(code == Some(2) && told.contains("bytes"), "{told}");
     assert_eq!(asked(b"").0, Some(2));
 }
+
+/// Catches files under temporary names that stay for ever, and those of an emission that is under way taken away.
+#[test]
+fn what_a_killed_emission_has_left_is_removed_by_the_next_one() {
+    let dir = Dir::new("killed");
+    let out = dir.path("out");
+    good(&["emit", "--out", &out]);
+    let names: Vec<String> = dir.files().into_iter().map(|(name, _)| name).collect();
+    let part = |name: &str, process: u32| format!("out/s6_two_channel/.{name}.part{process}");
+    let left = [
+        part("MANIFEST", 4_194_000),
+        part("s6_two_channel.v", 1),
+        part("s6_two_channel_top.v", std::process::id()),
+    ];
+    for name in &left {
+        dir.write(name, b"half a file");
+    }
+    // Of an emission that goes on meanwhile, and files of others.
+    let busy = fs::File::create(dir.0.join(part("README.md", 77))).unwrap();
+    busy.lock().unwrap();
+    dir.write("out/s6_two_channel/.s6_two_channel.v.partial", b"");
+    dir.write("out/s6_two_channel/.mine.part12", b"");
+    // Nothing else is to be written.
+    good(&["emit", "--out", &out]);
+    let now: Vec<String> = dir.files().into_iter().map(|(name, _)| name).collect();
+    for name in &left {
+        assert!(!now.contains(&dir.path(name)), "{name}");
+    }
+    assert_eq!(now.len(), names.len() + 3, "{now:?}");
+}
