@@ -280,6 +280,29 @@ fn reg_write_keeps_to_the_limits_of_the_map_unless_forced() {
     );
 }
 
+/// Catches names that `reg list` and `reg read` print, and `reg write` does not take.
+#[test]
+fn reg_write_takes_names_of_a_words_bits() {
+    let sources = "card_config.trigger_sources";
+    let port = ["--port", super::quicker_service_port()];
+    let write =
+        |name: &str, value: &str| run(&[&["reg", "write", name, value][..], &port].concat());
+    for (value, wanted) in [("pin,timer", 3), ("timer", 2), ("pin, register", 5)] {
+        let outcome = write(sources, value);
+        assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+        assert!(
+            outcome.stdout.ends_with(&format!(" = {wanted}\n")),
+            "{outcome:?}"
+        );
+    }
+    let outcome = write(sources, "pin,tmier");
+    assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+    assert_eq!(
+        outcome.messages,
+        ["value = pin,tmier: is not a number from 0 to 4294967295; write 123, 0x7B or 0b1111011, or names of its bits: pin, timer, register"]
+    );
+}
+
 /// Catches a program that says nothing of results that nobody got.
 #[cfg(target_os = "linux")]
 #[test]

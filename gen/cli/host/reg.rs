@@ -200,7 +200,36 @@ fn value_of(place: &Place, text: &str, force: bool, protocol: Protocol) -> Resul
     let limited = |f: &&Field| !f.ranges(protocol).is_empty() && !force;
     let field = place.field.filter(|f| !limited(f));
     let most = field.map_or(u32::MAX, |f| f.mask() >> f.lsb);
-    number("value", text, 0..=most.into()).map(|n| n as u32)
+    let number = number("value", text, 0..=most.into()).map(|n| n as u32);
+    number.map_err(|error| {
+        let is_name = text.starts_with(|c: char| c.is_ascii_alphabetic());
+        let names = if is_name {
+            names_told(place)
+        } else {
+            String::new()
+        };
+        GenError::input(error.messages().join("\n") + &names)
+    })
+}
+
+/// The word that is written where a word's bits are named: those and no other ones, and wider fields as they are; none if they are not.
+fn word_of(place: &Place, text: &str, before: u32) -> Option<u32> {
+    let bits = || place.register.fields.iter().filter(|f| f.width == 1);
+    let bit_of = |name: &str| bits().find(|f| f.name == name.trim()).map(Field::mask);
+    let all: u32 = bits().map(Field::mask).fold(0, |all, bit| all | bit);
+    let mut named = text.split(',').map(bit_of);
+    let named = named.try_fold(0, |word, bit| bit.map(|bit| word | bit))?;
+    place.field.is_none().then_some(before & !all | named)
+}
+
+/// What else than a number a word takes.
+fn names_told(place: &Place) -> String {
+    let bits = place.register.fields.iter().filter(|f| f.width == 1);
+    let names: Vec<&str> = bits.map(|f| f.name).collect();
+    match place.field.is_none() && !names.is_empty() {
+        true => format!(", or names of its bits: {}", names.join(", ")),
+        false => String::new(),
+    }
 }
 
 /// When a period of the timer that was written takes effect, if the timer runs; `before` is the one until now.
@@ -227,7 +256,15 @@ fn write(
 ) -> Result<Outcome, GenError> {
     let place = card.place(name).map_err(told)?;
     let protocol = card.identity().protocol_of(&place);
-    let value = value_of(&place, text, force, protocol)?;
+    // What acts when it is written says nothing of itself.
+    let before = match place.register.access {
+        Access::Strobe => 0,
+        _ => card.read(&place).map_err(told)?,
+    };
+    let value = match word_of(&place, text, before) {
+        Some(word) => word,
+        None => value_of(&place, text, force, protocol)?,
+    };
     if !force {
         card.permits(&place, value)
             .map_err(|e| GenError::input(format!("{e}; --force writes it all the same")))?;
