@@ -554,8 +554,8 @@ fn a_count_that_no_card_has_is_refused_with_its_line() {
     let file = folder.join("strange.csv");
     let head = "trigger,time_s,missing,ch0_raw,ch0_deg,ch0_turns,ch0_fresh,ch0_cause";
     for (missing, exit_code) in [(u64::from(u32::MAX), 0), (1 << 32, 2), (u64::MAX, 2)] {
-        let row = |n| format!("{n},0.{n},{missing},5,0.1,0,1,none\n");
-        let text = format!("{head}\n{}{}", row(1), row(2));
+        let row = |n: u64, trigger: u64| format!("{trigger},{n}000,{missing},5,0.1,0,1,none\n");
+        let text = format!("{head}\n{}{}", row(1, 1), row(2, missing.saturating_add(2)));
         fs::write(&file, text).unwrap();
         let name = file.to_str().unwrap();
         for command in ["stats", "plot"] {
