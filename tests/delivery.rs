@@ -11,6 +11,7 @@ mod emitted;
 mod files;
 mod house;
 mod maps;
+mod new;
 mod packages;
 mod pages;
 #[allow(dead_code)] // other topics take the rest

@@ -1,7 +1,7 @@
 //! Programs that serve others, beside clients that never read, that flood, that say nothing, and that come in crowds.
 
 use super::{slow_card, Served};
-use crate::program::{bad, program, run};
+use crate::program::{bad, good, program, run, Dir};
 use endat_gen::virtual_card::Door;
 use std::fs;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
@@ -325,4 +325,40 @@ fn a_second_program_is_told_that_the_card_is_in_use() {
     first.write_all(&[2, 1, 0, 0, 0, 0]).unwrap();
     first.read_exact(&mut word).unwrap();
     assert_eq!(&word, b"EnDt");
+}
+
+/// Catches a log whose memory grows with what it has written, and files that do not go on.
+#[test]
+#[ignore = "slow: two minutes of log at full speed, which are hours of a card, in constant memory"]
+fn a_log_at_full_speed_stays_in_its_memory() {
+    let dir = Dir::new("log_memory");
+    let out = dir.path("day.parquet");
+    let log = ["log", "--port", "load", "--seconds", "120", "--out", &out];
+    let mut log = Program::new(&log, 0);
+    let begin = Instant::now();
+    let (mut early, mut late) = (0, 0);
+    let status = loop {
+        if let Some(status) = log.process.try_wait().unwrap() {
+            break status;
+        }
+        let most = match begin.elapsed() < Duration::from_secs(40) {
+            true => &mut early,
+            false => &mut late,
+        };
+        *most = log.memory().max(*most);
+        thread::sleep(Duration::from_millis(200));
+    };
+    assert!(status.success(), "{status}");
+    let mut files: Vec<String> = dir.files().into_iter().map(|(name, _)| name).collect();
+    // The first one has no number.
+    files.sort_by_key(|name| name.replace("day.", "day-0001."));
+    println!("{early} kB, then {late} kB; {} files", files.len());
+    assert!(late * 10 <= early * 11, "{early} to {late} kB");
+    assert!(files.len() > 1 && files[0] == out, "{files:?}");
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let begin = Instant::now();
+    let told = good(&[&["stats", "--json"][..], &files].concat());
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    println!("{} rows, read in {:?}", told["rows"], begin.elapsed());
+    assert_eq!((&told["missing"], &told["misfits"]), (&0.into(), &0.into()));
 }
