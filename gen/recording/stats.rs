@@ -57,41 +57,42 @@ impl Line {
 /// Values that a parabola takes away.
 const PARABOLA_PARAMETERS: f64 = 3.0;
 
-/// What is left of values without the parabola that is nearest to them: position, speed and acceleration are no noise.
-fn rest_of_parabola(points: &[(f64, f64)]) -> Vec<f64> {
+/// Leaves of values what is left without the parabola that is nearest to them: position, speed and acceleration are no noise. The times are
+/// changed, too.
+fn leave_rest_of_parabola(points: &mut [(f64, f64)]) {
     let count = points.len() as f64;
     let middle = points.iter().map(|p| p.0).sum::<f64>() / count;
-    let reach = points
-        .iter()
-        .map(|p| (p.0 - middle).abs())
-        .fold(0.0, f64::max);
-    let reach = if reach > 0.0 { reach } else { 1.0 };
     let first = points.first().map_or(0.0, |p| p.1);
-    let mut rest: Vec<f64> = points.iter().map(|p| p.1 - first).collect();
-    let mut known: Vec<Vec<f64>> = Vec::new();
-    for power in 0..3 {
-        let mut basis: Vec<f64> = (points.iter())
-            .map(|p| ((p.0 - middle) / reach).powi(power))
-            .collect();
-        // Upright to those before it, so that each can be taken away alone.
-        for other in &known {
-            take_away(&mut basis, other);
-        }
-        take_away(&mut rest, &basis);
-        known.push(basis);
+    let reach = points.iter().map(|p| (p.0 - middle).abs());
+    let reach = Some(reach.fold(0.0, f64::max)).filter(|r| *r > 0.0);
+    let scale = reach.map_or(1.0, |r| 1.0 / r);
+    let mean = points.iter().map(|p| p.1 - first).sum::<f64>() / count;
+    for (t, x) in points.iter_mut() {
+        *t = (*t - middle) * scale;
+        *x -= first + mean;
     }
-    rest
-}
-
-/// Takes the part away that is along another one.
-fn take_away(from: &mut [f64], other: &[f64]) {
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-    let size = product(other, other);
+    // The slope, and then the square: upright to those before it, so that each can be taken away alone.
+    let [mut square, mut cube, mut product] = [0.0; 3];
+    for (t, x) in points.iter() {
+        square += t * t;
+        cube += t * t * t;
+        product += t * x;
+    }
+    if square == 0.0 {
+        return;
+    }
+    let (slope, even, odd) = (product / square, square / count, cube / square);
+    let bend = |t: f64| t * t - even - odd * t;
+    let [mut size, mut product] = [0.0; 2];
+    for (t, x) in points.iter_mut() {
+        *x -= slope * *t;
+        let bend = bend(*t);
+        size += bend * bend;
+        product += bend * *x;
+    }
     if size > 0.0 {
-        let part = product(from, other) / size;
-        for (x, y) in from.iter_mut().zip(other) {
-            *x -= part * y;
-        }
+        let part = product / size;
+        points.iter_mut().for_each(|(t, x)| *x -= part * bend(*t));
     }
 }
 
@@ -132,11 +133,13 @@ impl Track {
     }
 
     fn end_window(&mut self) {
-        let rest = rest_of_parabola(&self.window);
-        let count = rest.len() as f64;
-        self.window.clear();
-        let squares: f64 = rest.iter().map(|x| x * x).sum();
-        rest.into_iter().for_each(|x| self.histogram.push(x));
+        leave_rest_of_parabola(&mut self.window);
+        let count = self.window.len() as f64;
+        let mut squares = 0.0;
+        for (_, x) in self.window.drain(..) {
+            squares += x * x;
+            self.histogram.push(x);
+        }
         self.squares += squares;
         self.in_windows += count as u64;
         self.windows += 1;
