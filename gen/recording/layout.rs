@@ -32,6 +32,8 @@ pub struct Layout {
     pub additional_data: bool,
     /// What is calculated.
     pub derived: Vec<DerivedColumn>,
+    /// CSV as spreadsheets read it where the comma is in numbers: fields apart by semicolons.
+    pub decimal_comma: bool,
 }
 
 /// Columns of the additional data of a channel.
@@ -49,6 +51,7 @@ impl Layout {
             scales,
             additional_data: false,
             derived: Vec::new(),
+            decimal_comma: false,
         }
     }
 

@@ -68,7 +68,11 @@ impl<W: Write> Sheet<W> {
     }
 
     fn record(&mut self, fields: &[String]) -> io::Result<()> {
-        let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
+        let mut writer = csv::WriterBuilder::new();
+        if self.layout.decimal_comma {
+            writer.delimiter(b';');
+        }
+        let mut writer = writer.from_writer(Vec::new());
         writer.write_record(fields)?;
         let line = writer
             .into_inner()
@@ -81,7 +85,11 @@ impl<W: Write> Sheet<W> {
         let time_s = entry.row.cycles as f64 / self.system_hz;
         match self.form {
             Text::Csv => {
-                let fields = self.fields(entry, time_s);
+                let mut fields = self.fields(entry, time_s);
+                if self.layout.decimal_comma {
+                    // No name of a cause has a point.
+                    fields.iter_mut().for_each(|f| *f = f.replace('.', ","));
+                }
                 self.record(&fields)
             }
             Text::Jsonl => {
@@ -222,6 +230,24 @@ mod tests {
             sheet.row(&entry).unwrap();
         }
         String::from_utf8(sheet.out).unwrap()
+    }
+
+    #[test]
+    fn a_spreadsheet_with_decimal_commas_has_semicolons() {
+        let comma = Layout {
+            decimal_comma: true,
+            ..layout(
+                [Scale::singleturn(8), Scale::Linear { step_nm: 500.0 }],
+                false,
+            )
+        };
+        let text = written(Text::Csv, comma, &[], None);
+        let mut lines = text.lines();
+        assert!(lines.next().unwrap().starts_with("trigger;time_s;missing;"));
+        assert_eq!(
+            lines.next(),
+            Some("65534;0,000000000;0;64;90;0;1;none;;;;0;crc")
+        );
     }
 
     fn scales() -> [Scale; 2] {

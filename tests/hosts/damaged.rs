@@ -144,6 +144,29 @@ fn recordings_that_a_spreadsheet_saved_are_read() {
     let other = dir.write("other.csv", text.as_bytes());
     let other: Value = serde_json::from_str(&good(&["stats", "--json", &other])).unwrap();
     assert_eq!(other, wanted);
+    // And what `log` writes for one is the same recording.
+    let [point, comma] = ["point.csv", "comma.csv"].map(|name| dir.path(name));
+    log(&point, &["--about", "--derive", "twist=0-1:unwrap"]);
+    let lines = log(
+        &comma,
+        &["--about", "--derive", "twist=0-1:unwrap", "--decimal-comma"],
+    );
+    assert!(lines[2].contains(";0,000000000;0;"), "{}", lines[2]);
+    let figures = |file: &str| {
+        let mut told: Value = serde_json::from_str(&good(&["stats", "--json", file])).unwrap();
+        told["start_time"] = Value::Null;
+        told
+    };
+    assert_eq!(figures(&point), figures(&comma));
+    let wrong = [
+        "log",
+        "--port",
+        "load",
+        "--decimal-comma",
+        "--out",
+        "x.jsonl",
+    ];
+    assert!(bad(&wrong, 2).contains("--decimal-comma: is of CSV alone"));
     // Two commas are no number.
     let wrong = text.replace("40,57216", "40,572,16");
     let wrong = dir.write("wrong.csv", wrong.as_bytes());

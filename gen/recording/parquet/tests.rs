@@ -24,6 +24,7 @@ fn layout() -> Layout {
             unit: "deg".into(),
             digits: None,
         }],
+        decimal_comma: false,
     }
 }
 

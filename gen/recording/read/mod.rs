@@ -120,6 +120,15 @@ fn check_value(line: u64, channel: usize, cell: &Cell, scale: Option<&Scale>) ->
         || scale
             .wraps_at()
             .is_some_and(|turn| off >= turn - scale.step());
+    let turns = cell.turns.zip(units.turns);
+    if let Some((told, known)) = turns.filter(|(told, known)| told != known) {
+        return Err(Wrong::at(
+            line,
+            format!(
+                "ch{channel}_turns = {told}: does not fit ch{channel}_raw = {raw}, which is in turn {known}; delete the line if it is damaged"
+            ),
+        ));
+    }
     match is_near {
         true => Ok(()),
         false => Err(Wrong::at(

@@ -40,6 +40,9 @@ pub struct LogArgs {
     /// Form of the file [default: by its suffix, .csv, .jsonl or .parquet; CSV without one]
     #[arg(long, value_enum)]
     pub format: Option<Format>,
+    /// CSV for a spreadsheet where the comma is in numbers: fields apart by semicolons
+    #[arg(long)]
+    pub decimal_comma: bool,
     /// Let CSV and JSON lines begin with what they are of: units, clock, encoders, start; Parquet always does
     #[arg(long)]
     pub about: bool,
@@ -192,6 +195,11 @@ impl LogArgs {
             let text = "--format = parquet: needs a regular file; give one with --out, or take csv or jsonl";
             return Err(GenError::input(text));
         }
+        if self.decimal_comma && format != Format::Csv {
+            return Err(GenError::input(
+                "--decimal-comma: is of CSV alone; leave it out, or take --format csv",
+            ));
+        }
         target.first()?;
         Ok(Checked {
             target,
@@ -216,6 +224,7 @@ impl LogArgs {
         let ranges = ranges(&scales, &plates);
         let mut layout = Layout::of(scales.clone());
         layout.additional_data = identity.stream_additional_data;
+        layout.decimal_comma = self.decimal_comma;
         let derivation = Derivation::parse(&self.derive, &scales, &ranges, &layout.text())?;
         layout.derived = derivation.columns();
         let faults = Faults::named(&self.on_cause, judge)?;
