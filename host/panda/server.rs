@@ -305,7 +305,16 @@ impl<'c, T: Transport> Server<'c, T> {
             return Ok(());
         };
         let mut queue = VecDeque::new();
-        acquisition.feed.fill(self.card, &mut queue, SLICE)?;
+        // What has come meanwhile, and not only the first piece of it: else a card that sends much falls behind where clients ask much.
+        let end = Instant::now() + TURN;
+        let (mut wait, mut before) = (SLICE, 0);
+        loop {
+            acquisition.feed.fill(self.card, &mut queue, wait)?;
+            if queue.len() == before || Instant::now() >= end {
+                break;
+            }
+            (wait, before) = (Duration::ZERO, queue.len());
+        }
         // A row of PandABlocks is a trigger's.
         let mut rows: Vec<Row> = queue.into_iter().filter(|r| r.run.is_none()).collect();
         // Rows behind a gap do not belong to this acquisition.

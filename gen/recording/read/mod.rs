@@ -157,6 +157,11 @@ fn known_cause(line: u64, channel: usize, name: &str) -> Result<Cow<'static, str
 
 /// A name as rows of a card have it, so that millions of them cost nothing.
 fn cause(name: &str) -> Cow<'static, str> {
+    // Mostly it is this one.
+    let none = endat_host::causes::name(0);
+    if name == none {
+        return none.into();
+    }
     let known = endat_host::feed::cause_codes().find(|(_, known)| *known == name);
     known.map_or_else(|| name.to_owned().into(), |(_, known)| known.into())
 }
