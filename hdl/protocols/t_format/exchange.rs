@@ -12,7 +12,8 @@
 //! A rising edge is the header if the two cells before it were LOW, its own is HIGH and the next one LOW. LOW pulses of less than a
 //! bit and a half are passed over until the reply gap has ended. Later fields are timed from their start bits.
 //!
-//! After a reply that did not come whole the next request waits until the line has been HIGH for longer than any field lasts.
+//! After a reply that did not come whole the next request waits until the line has been HIGH for longer than any field lasts. After a reset, which
+//! may have come in the middle of an exchange, it waits for the longest pause before a reply as well.
 //! Two states that do not know of each other must agree that a request is under way before the driver is on, and one that lasts too long is
 //! cut. From the header on a reply is refused if its level changes twice within half a bit.
 
@@ -116,7 +117,12 @@ pub struct Exchange {
     run: Reg<Bits<6>>,
     owed: Reg<Bit>,
     bits_mod_3: Reg<Bits<2>>,
+    // The line may still carry a reply: a request is refused.
+    #[start(true)]
     unsettled: Reg<Bit>,
+    // Since the reset the line has not been HIGH for so long that a reply may begin; then it must be HIGH for the longest pause before one.
+    #[start(true)]
+    after_reset: Reg<Bit>,
     check: Reg<Bits<8>>,
     echo: Reg<Bits<4>>,
     refused: Reg<Bit>,

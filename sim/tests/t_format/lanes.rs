@@ -78,7 +78,8 @@ impl Many {
             rng: Rng::new(seed),
             cycle: 0,
         };
-        many.run(200, &[]);
+        // The line is at rest after power-up.
+        many.run(30 * conditions.system_mhz, &[]);
         many
     }
 

@@ -6,6 +6,7 @@ mod faults;
 mod glitches;
 mod header;
 mod lanes;
+mod reset;
 mod rig;
 mod three_ways;
 mod upsets;

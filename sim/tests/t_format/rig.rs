@@ -10,6 +10,9 @@ use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
 use std::sync::OnceLock;
 
+/// The line is at rest after power-up, with the pauses that the receiver starts with.
+const READY_US: u64 = 45;
+
 /// The inputs, as [`Inputs::row`] lists them.
 pub const INPUTS: [&str; 9] = [
     "rst_i",
@@ -138,7 +141,8 @@ impl Rig {
             period: 1_000_000 / system_mhz,
             recorded: None,
         };
-        rig.steps(20);
+        // After power-up no request goes out before the line has been at rest.
+        rig.wait_us(READY_US);
         rig
     }
 

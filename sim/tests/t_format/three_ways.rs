@@ -12,6 +12,8 @@ fn recorded(ids: &[u8]) -> Stimulus {
     let mut rng = Rng::new(7);
     let mut rig = Rig::new(20, EncoderConfig::default());
     rig.record();
+    // From power-up on: the line has to be at rest.
+    rig.wait_us(45);
     for &id in ids {
         rig.encoder.config.single_turn = rng.next_u64() as u32 >> 8;
         rig.encoder.config.multi_turn = rng.next_u64() as u32 >> 8;
@@ -32,6 +34,9 @@ fn recorded(ids: &[u8]) -> Stimulus {
     rig.pins.reset = true;
     rig.steps(3);
     rig.pins.reset = false;
+    // Refused, then taken: the line has to be at rest.
+    rig.exchange(2);
+    rig.wait_us(40);
     rig.exchange(2);
     rig.recorded()
 }

@@ -101,7 +101,8 @@ impl<'a> Run<'a> {
             encoder: Encoder::new(config),
             cycle: 0,
         };
-        run.cycles(2 * SYSTEM_MHZ);
+        // The line is at rest after power-up.
+        run.cycles(30 * SYSTEM_MHZ);
         run
     }
 

@@ -93,6 +93,8 @@ impl Rig {
         let mut link = TFormatLink::new(config, US / 10);
         link.set_motion(std::sync::Arc::new(shaft));
         master.bench.add_t_format(&PinNames::card(t_format), link);
+        // After power-up no request goes out before the line has been at rest.
+        master.bench.run_cycles(80 * CYCLES);
         Self {
             master,
             endat,

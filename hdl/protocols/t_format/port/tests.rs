@@ -33,8 +33,8 @@ impl Rig {
             tx: true,
             us: US,
         };
-        // Longer than any field: the line is idle.
-        rig.us(20);
+        // Longer than any pause and any field: the line is idle.
+        rig.us(30);
         rig
     }
 
@@ -196,8 +196,11 @@ fn a_trigger_that_is_not_taken_is_told_by_the_next_result() {
     let mut rig = Rig::new();
     rig.send(2, 0, 0);
     rig.us(2);
+    assert!(!rig.uut.displaced.val());
     rig.trigger();
+    assert!(rig.uut.displaced.val());
     rig.us(60);
+    assert!(!rig.uut.displaced.val(), "a strobe");
     assert_eq!(rig.result().0, 0);
     assert_eq!(rig.answer().0, cause::NO_ANSWER);
     rig.trigger();

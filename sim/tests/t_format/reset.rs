@@ -1,0 +1,72 @@
+//! A reset in the middle of an exchange: the next request waits until the encoder has certainly said all.
+
+use super::rig::Rig;
+use endat_sim::rng::Rng;
+use endat_sim::t_format::{EncoderConfig, Violation};
+use endat_sim::US;
+
+/// Longest pause before a reply that the receiver is set to.
+const REPLY_GAP_US: u64 = 20;
+/// The line is at rest after power-up.
+const READY_US: u64 = 60;
+/// Request 3, with its pause and its reply.
+const EXCHANGE_US: u64 = 48 + REPLY_GAP_US;
+
+/// What the driver did to a reply, or too soon after it; a request that the reset has cut is no fault of the next one.
+fn is_collision(violation: &Violation) -> bool {
+    matches!(
+        violation,
+        Violation::Conflict | Violation::Impatient | Violation::TooEarly
+    )
+}
+
+fn requests_wait_after_a_reset(moments: u64) {
+    let mut rng = Rng::new(47);
+    let (mut refused, mut collisions) = (0, vec![]);
+    for moment in 0..moments {
+        let gap_us = rng.in_range(1, REPLY_GAP_US - 1);
+        let config = EncoderConfig {
+            reply_gap: gap_us * US,
+            status: 0,
+            ..EncoderConfig::default()
+        };
+        let mut rig = Rig::new(20, config);
+        rig.set_gap(REPLY_GAP_US);
+        rig.wait_us(READY_US);
+        rig.write(0, 3);
+        let span = EXCHANGE_US * 20;
+        let cycle = rng.in_range(moment * span / moments, (moment + 1) * span / moments);
+        rig.steps(cycle);
+        rig.pins.reset = true;
+        rig.steps(3);
+        rig.pins.reset = false;
+        rig.set_gap(REPLY_GAP_US);
+        // Asks again and again, as a controller that waits for its position.
+        for _ in 0..6 {
+            rig.wait_us(rng.in_range(0, 10));
+            rig.write(0, 3);
+            let map = rig.finish();
+            refused += u64::from(map.cause == 2);
+        }
+        let seen = rig.encoder.violations().iter().any(is_collision);
+        if seen {
+            collisions.push((cycle, gap_us));
+        }
+        rig.wait_us(READY_US);
+        assert!(rig.exchange(3).fresh, "{moment}");
+    }
+    assert!(refused > moments, "{refused}");
+    let count = collisions.len();
+    assert!(count == 0, "{count} of {moments}: {collisions:?}");
+}
+
+#[test]
+fn request_is_not_driven_into_a_reply_after_a_reset() {
+    requests_wait_after_a_reset(100);
+}
+
+#[test]
+#[ignore = "slow: a reset at 3000 moments of an exchange"]
+fn request_is_not_driven_into_a_reply_after_a_reset_at_any_moment() {
+    requests_wait_after_a_reset(3_000);
+}
