@@ -49,8 +49,8 @@ pub trait Other: Sync {
 /// What a bench has for the channels of a protocol: text, and what the rest of the bench must know of them.
 ///
 /// In the text of a protocol called `x` the rest of the bench counts on the task `x_new_fields` (other content, and no fault),
-/// `x_check_requests` (behind the start of a trigger), `x_check` (a channel and the status of its result), `x_check_stamps`, the function
-/// `x_start_cycles` (from the time stamp of an EnDat channel to that of this one; 0 of others) and the parameter `X_TRIGGER_OVERRUN`.
+/// `x_check_requests` (behind the start of a trigger), `x_check` (a channel and the status of its result), `x_check_stamps`, the functions
+/// `x_start_cycles` (from the time stamp of an EnDat channel to that of this one; 0 of others) `x_withdrawn` (the position of a channel has been withdrawn), and the parameter `X_TRIGGER_OVERRUN`.
 #[derive(Serialize)]
 pub struct BenchParts {
     /// Name of the protocol, and as an identifier.

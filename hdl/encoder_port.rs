@@ -271,7 +271,7 @@ impl Logic for EncoderPort {
             FrameResultOut::link(&mut self.result, &mut self.t_format[i].result);
             connect!(self.line <= self.t_format[i]; data_o, data_oe);
             connect!(self.end <= self.t_format[i]; over, over_request);
-            self.busy.next = self.t_format[i].busy.val();
+            connect!(self <= self.t_format[i]; busy, displaced);
             self.window.host_word.next = self.t_format[i].host_word.val();
         }
         for i in 0..self._ssis {
@@ -288,7 +288,7 @@ impl Logic for EncoderPort {
             self.line.data_oe.next = false;
             self.end.over.next = self.ssi[i].over.val();
             self.end.over_request.next = false;
-            self.busy.next = self.ssi[i].busy.val();
+            connect!(self <= self.ssi[i]; busy, displaced);
         }
         for i in 0..self._served {
             connect!(self.served[i] <= self; clock, reset);
@@ -370,7 +370,6 @@ impl Logic for EncoderPort {
         self.delay_cycles.next = 0.into();
         self.request_runs.next = false;
         self.line_high.next = false;
-        self.displaced.next = false;
         self.end.over_cause.next = 0.into();
         self.end.over_flags.next = 0.into();
         self.reply.next = 0.into();

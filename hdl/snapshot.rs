@@ -6,6 +6,8 @@
 //! withdraw   ____________/\________    or: it has not; what was before comes back
 //! ```
 //!
+//! Where the position before is not kept, no position is valid after `withdraw`, until the next good one.
+//!
 //! What is held is guarded: its parity is taken when it has been loaded and compared in every cycle from then on. A register that
 //! was upset makes the position invalid, with a cause of its own.
 //!
@@ -89,6 +91,7 @@ pub struct Snapshot {
     upset_now: Signal<Local, Bit>,
     moment_wrong: Signal<Local, Bit>,
     ago: Signal<Local, Bits<11>>,
+    keeps_earlier: Constant<Bit>,
     upset_cause: Constant<Bits<5>>,
     upset_flag: Constant<Bits<20>>,
 }
@@ -96,7 +99,17 @@ pub struct Snapshot {
 impl Snapshot {
     /// For a protocol with this cause and this flag for what is stored and was upset.
     pub fn new(upset_cause: u64, upset_flag: u64) -> Self {
+        Self::keeping(true, upset_cause, upset_flag)
+    }
+
+    /// The same without the position before: `withdraw` leaves none.
+    pub fn without_earlier(upset_cause: u64, upset_flag: u64) -> Self {
+        Self::keeping(false, upset_cause, upset_flag)
+    }
+
+    fn keeping(keeps_earlier: bool, upset_cause: u64, upset_flag: u64) -> Self {
         Self::from_parts(SnapshotParts {
+            keeps_earlier: Constant::new(keeps_earlier),
             upset_cause: Constant::new(upset_cause.into()),
             upset_flag: Constant::new(upset_flag.into()),
         })
@@ -118,7 +131,8 @@ impl Logic for Snapshot {
             & (self.moment_sum.q.val() ^ self.moment_parity.q.val());
         self.take_good.next =
             self.told.publish.val() & self.told.good.val() & !self.moment_wrong.val();
-        self.take_back.next = self.told.withdraw.val() & self.unconfirmed.q.val();
+        self.take_back.next =
+            self.told.withdraw.val() & (self.unconfirmed.q.val() | !self.keeps_earlier.val());
         self.ago.next = 0.into();
         if self.latched.val() {
             self.ago.next = self.delay_cycles.val();
@@ -152,13 +166,15 @@ impl Logic for Snapshot {
             self.held_f2.d.next = self.has_f2_in.val();
             self.stamp.d.next = self.moment.q.val();
             self.valid.d.next = true;
-            self.earlier.d.next = self.held.q.val();
-            self.earlier_crc.d.next = self.held_crc.q.val();
-            self.earlier_width.d.next = self.held_width.q.val();
-            self.earlier_f2.d.next = self.held_f2.q.val();
-            self.earlier_stamp.d.next = self.stamp.q.val();
-            self.earlier_valid.d.next = self.valid.q.val();
-            self.earlier_parity.d.next = self.parity.q.val();
+            if self.keeps_earlier.val() {
+                self.earlier.d.next = self.held.q.val();
+                self.earlier_crc.d.next = self.held_crc.q.val();
+                self.earlier_width.d.next = self.held_width.q.val();
+                self.earlier_f2.d.next = self.held_f2.q.val();
+                self.earlier_stamp.d.next = self.stamp.q.val();
+                self.earlier_valid.d.next = self.valid.q.val();
+                self.earlier_parity.d.next = self.parity.q.val();
+            }
         }
         if self.told.confirm.val() | self.take_back.val() {
             self.unconfirmed.d.next = false;
@@ -184,13 +200,17 @@ impl Logic for Snapshot {
             self.is_upset.d.next = self.stamp_sum.val() ^ self.moment_parity.q.val();
         }
         if self.take_back.val() {
-            self.held.d.next = self.earlier.q.val();
-            self.held_crc.d.next = self.earlier_crc.q.val();
-            self.held_width.d.next = self.earlier_width.q.val();
-            self.held_f2.d.next = self.earlier_f2.q.val();
-            self.stamp.d.next = self.earlier_stamp.q.val();
-            self.valid.d.next = self.earlier_valid.q.val();
-            self.parity.d.next = self.earlier_parity.q.val();
+            if self.keeps_earlier.val() {
+                self.held.d.next = self.earlier.q.val();
+                self.held_crc.d.next = self.earlier_crc.q.val();
+                self.held_width.d.next = self.earlier_width.q.val();
+                self.held_f2.d.next = self.earlier_f2.q.val();
+                self.stamp.d.next = self.earlier_stamp.q.val();
+                self.valid.d.next = self.earlier_valid.q.val();
+                self.parity.d.next = self.earlier_parity.q.val();
+            } else {
+                self.valid.d.next = false;
+            }
             self.is_fresh.d.next = false;
         }
         if self.told.publish.val() | self.told.late_fault.val() {

@@ -223,13 +223,13 @@ static const char *const meanings[] = {
     NULL,
     NULL,
     "config<n>.frame.command of an SSI channel has no bit 2, or what a host wrote to the configuration was disturbed; nothing was clocked.",
-    "The DATA line of an SSI encoder was LOW when a frame was to begin: it still held the last position, has no supply, or the pair is swapped or shorted. Nothing was clocked.",
-    "DATA was HIGH behind the last bit, or between two copies: nothing is plugged in, the encoder has more bits than configured, or its bits come too late for this clock.",
+    "The DATA line of an SSI encoder was LOW when a frame was to begin, and nothing was clocked, or at the first rising edge of CLOCK: it still held the last position, has no supply, or the pair is swapped or shorted.",
+    "DATA was HIGH after the last bit, or between two copies: nothing is plugged in, the encoder has another width than configured, or its bits come too late for this clock.",
     "The parity bit behind the position does not fit it: a bit was disturbed, or the encoder has no parity, or the other one.",
     "The position came twice, and not the same: a bit was disturbed, or the encoder takes a new position for each copy.",
     NULL,
     NULL,
-    "Behind the frame before, DATA was still LOW after recovery_max_ns: a trigger at the highest rate would meet the encoder there. The position is good.",
+    "After a frame DATA was still LOW when recovery_max_ns had passed: the line is broken or shorted, or the encoder needs longer than configured. The position of that frame is withdrawn. The next result says so, too; its own position is good.",
 };
 
 const char *endat_cause_meaning(uint32_t number)
@@ -316,7 +316,7 @@ static const char *const remedies[] = {
     "Look at termination and shield; lower clock_hz; leave twice out if the encoder does not repeat.",
     NULL,
     NULL,
-    "Raise recovery_max_ns to the encoder's monoflop time.",
+    "Look at plug and pair; raise recovery_max_ns to the encoder's monoflop time.",
 };
 
 const char *endat_cause_remedy(uint32_t number)

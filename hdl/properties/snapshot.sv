@@ -2,7 +2,7 @@
 // one_number_each: Each result has the next number, and nothing else changes it.
 // bad_is_not_fresh: A result without good position leaves the position, and says that it is an earlier one.
 // faults_with_results: Cause and flags change only with a result, a fault after it, or when the stored position was found changed.
-// restored: A position that is withdrawn gives way to the last good one, with its time.
+// restored: A position that is withdrawn gives way to the last good one, with its time; where that is not kept, no position is valid.
 reg f_past_valid; initial f_past_valid = 1'b0;
 reg [47:0] f_last; reg [31:0] f_last_stamp; reg f_last_valid;
 wire [91:0] f_set = {held, held_width, held_crc, held_f2, stamp};
@@ -19,9 +19,9 @@ always @(posedge clock) begin
         one_number_each: assert (count == $past(count) + {15'd0, $past(publish)});
         if ($past(publish & !good & !take_back)) bad_is_not_fresh: assert (!is_fresh & $stable(f_set));
         if (!$past(publish | late_fault | upset_now)) faults_with_results: assert ($stable({cause_held, flags_held}));
-        if ($past(take_back & !take_good)) restored: assert ((held == $past(earlier)) & (stamp == $past(earlier_stamp)) & !is_fresh);
+        if ($past(take_back & !take_good)) restored: assert (!is_fresh & (KEEPS_EARLIER ? (held == $past(earlier)) & (stamp == $past(earlier_stamp)) : !valid));
     end
 end
 // at rest the stored position fits its parity; the proof of a frame begins and ends there
 wire f_whole = loaded | (parity_now == parity);
-always @* restored_same: assert (!f_past_valid | !unconfirmed | ((f_last == earlier) & (f_last_stamp == earlier_stamp) & (f_last_valid == earlier_valid)));
+always @* restored_same: assert (!KEEPS_EARLIER | !f_past_valid | !unconfirmed | ((f_last == earlier) & (f_last_stamp == earlier_stamp) & (f_last_valid == earlier_valid)));

@@ -31,7 +31,7 @@ pub struct EncoderConfig {
     pub gray: bool,
     /// Behind the position comes a bit with which the ones are even, or odd if this is true.
     pub parity: Option<bool>,
-    /// It sends the same position again if the clock goes on within `tm`.
+    /// It sends the same position again if the clock goes on within `tm`; otherwise DATA stays LOW then.
     pub repeats: bool,
     /// Recovery time: from the last falling edge until DATA is HIGH.
     pub tm: Time,
@@ -193,12 +193,18 @@ impl Encoder {
     /// The recovery time is over.
     fn recover(&mut self) {
         let whole = self.word.len() as u64;
-        if self.rises != whole * (self.copies as u64 + 1) {
+        // Clocks behind the only copy have been noted.
+        let is_whole = match self.config.repeats {
+            true => self.rises == whole * (self.copies as u64 + 1),
+            false => self.rises >= whole,
+        };
+        if !is_whole {
             self.violations.push(Violation::Clocks(self.rises));
         } else {
             self.frames += 1;
         }
         self.word.clear();
+        self.planned.clear();
         self.ready = None;
         self.data = true;
     }
@@ -233,10 +239,11 @@ impl Encoder {
         if self.word.is_empty() {
             self.take();
             (self.rises, self.copies) = (0, 0);
-        } else if self.rises == self.word.len() as u64 * (self.copies as u64 + 1) {
-            if !self.config.repeats {
+        } else if !self.config.repeats {
+            if self.rises >= self.word.len() as u64 {
                 self.note(Violation::NoRepeat);
             }
+        } else if self.rises == self.word.len() as u64 * (self.copies as u64 + 1) {
             if self.config.defect == Defect::TakesAnew {
                 self.config.position = self.config.position.wrapping_add(1);
                 self.take();
@@ -251,9 +258,10 @@ impl Encoder {
         if self.word.is_empty() {
             return;
         }
+        let is_over = !self.config.repeats && self.rises >= self.word.len() as u64;
         let place = (self.rises % self.word.len() as u64) as usize;
         self.rises += 1;
-        let mut level = self.word.get(place).copied().unwrap_or(false);
+        let mut level = !is_over && self.word[place];
         if let Defect::Flip { copy, bit } = self.config.defect {
             level ^= copy == self.copies && bit == place;
         }

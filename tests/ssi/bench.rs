@@ -61,6 +61,7 @@ fn it_passes_on_a_narrow_card_and_fails_on_broken_ports() {
         "no LOW bit between copies looked at",
         "the second copy shown",
         "time stamp with each falling edge",
+        "a position not withdrawn",
     ];
     check_some("ssi-quick", &narrow(), MUTATIONS, &names);
 }
@@ -96,14 +97,14 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "the second copy begins in the code of the first",
         PORT,
-        "bit_before_next = 1'b0;\n                ones_next = 1'b0;\n                left_next = bits;",
-        "ones_next = 1'b0;\n                left_next = bits;",
+        "bit_before = again[0];",
+        "bit_before = word[0];",
     ),
     mutation(
         "parity of both copies together",
         PORT,
-        "bit_before_next = 1'b0;\n                ones_next = 1'b0;\n                left_next = bits;",
-        "bit_before_next = 1'b0;\n                left_next = bits;",
+        "first_too_next = 1'b1;\n                ones_next = 1'b0;\n                left_next = bits;",
+        "first_too_next = 1'b1;\n                left_next = bits;",
     ),
     mutation(
         "parity not looked at",
@@ -114,14 +115,14 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "no LOW bit between copies looked at",
         PORT,
-        "if (between) begin\n                not_low_next = not_low | filter_level;",
-        "if (between) begin\n                not_low_next = not_low;",
+        "if (second) begin\n                    not_low_next = not_low | filter_level;",
+        "if (second) begin\n                    not_low_next = not_low;",
     ),
     mutation(
         "end not looked at",
         PORT,
-        "timer_next = recovery_limit_cycles;\n                not_low_next = not_low | filter_level;",
-        "timer_next = recovery_limit_cycles;\n                not_low_next = not_low;",
+        "timer_next = recovery_limit_cycles;\n                    not_low_next = not_low | filter_level;",
+        "timer_next = recovery_limit_cycles;\n                    not_low_next = not_low;",
     ),
     mutation(
         "copies not compared",
@@ -144,14 +145,14 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "LOW line not told",
         PORT,
-        "not_high_next = !filter_level;",
-        "not_high_next = 1'b0;",
+        "unknown_next = !frame[2];\n                not_high_next = !filter_level;",
+        "unknown_next = !frame[2];\n                not_high_next = 1'b0;",
     ),
     mutation(
         "a trigger in the frame not told",
         PORT,
-        "if (trigger & (state != AT_REST)) begin\n            lost_next = 1'b1;",
-        "if (trigger & (state != AT_REST)) begin\n            lost_next = 1'b0;",
+        "if (loses) begin\n            lost_next = 1'b1;",
+        "if (loses) begin\n            lost_next = 1'b0;",
     ),
     mutation(
         "clock too fast",
@@ -174,14 +175,20 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "a bit taken at the falling edge",
         PORT,
-        "assign takes_bit = (state == AT_LOW) & is_due & !latches & !between;",
-        "assign takes_bit = (state == AT_HIGH) & is_due & !latches & !between;",
+        "assign takes_bit = (state == AT_LOW) & is_due & !first;",
+        "assign takes_bit = (state == AT_HIGH) & is_due & !first;",
+    ),
+    mutation(
+        "a position not withdrawn",
+        PORT,
+        ".withdraw(is_late),",
+        ".withdraw(1'b0),",
     ),
     mutation(
         "a wrong position taken",
         PORT,
-        "assign snapshot_good = ended & good;",
-        "assign snapshot_good = ended;",
+        "assign snapshot_good = publishes & good;",
+        "assign snapshot_good = publishes;",
     ),
     mutation(
         "time stamp with each falling edge",

@@ -63,6 +63,8 @@ fn a_card_reads_endat_and_ssi_together() {
         let mut link = SsiLink::new(config, 200 * NS);
         link.set_motion(Arc::new(shaft));
         master.bench.add_other(&PinNames::card(ssi), Box::new(link));
+        // After power-up the encoder may be in the middle of a frame.
+        master.bench.run_for(60 * US);
         assert_eq!(master.read(at(&CARD, "protocols", 0)) >> 24, 1 << ssi);
         let mut seen = vec![];
         for round in 0..6 {
@@ -111,6 +113,48 @@ fn a_card_reads_endat_and_ssi_together() {
         }
         assert_eq!(master.bench.others().next().unwrap().complaints(), [""; 0]);
     }
+}
+
+/// A reset of the card in the middle of a frame, and a trigger of the host soon after it.
+#[test]
+fn card_shows_no_wrong_ssi_position_after_a_reset() {
+    let single =
+        "[[channel]]\nprotocol = \"ssi\"\nposition_bits = 25\nclock_hz = 1_000_000\ncable_m = 10\n";
+    let text = format!(
+        "name = \"single\"\n[clock]\nsystem_hz = 50_000_000\n{single}\
+         [trigger]\nsample_hz = 1_000\nsources = [\"register\"]\n[host]\nbus = \"apb\"\n"
+    );
+    let project = parse("single.toml", &text).unwrap();
+    let mut wrong = 0;
+    for moment in 0..20 {
+        let mut master = Master::at_channels(&project, &[]);
+        // It stays LOW after its last bit.
+        let config = EncoderConfig {
+            repeats: false,
+            position: 0x155_32D3,
+            tm: 25 * US,
+            ..EncoderConfig::default()
+        };
+        let link = SsiLink::new(config, 50 * NS);
+        master.bench.add_other(&PinNames::card(0), Box::new(link));
+        master.bench.run_for(60 * US);
+        master.write(at(&CARD, "trigger_now", 0), 1);
+        master.bench.run_for((2 + moment) * US);
+        master.bench.reset();
+        for _ in 0..4 {
+            master.bench.run_for(moment % 3 * US);
+            master.write(at(&CARD, "trigger_now", 0), 1);
+            master.bench.run_for(32 * US);
+            let (_, fresh, position, _) = result(&mut master, 0);
+            wrong += u32::from(fresh && position != 0x155_32D3);
+        }
+        master.bench.run_for(100 * US);
+        master.write(at(&CARD, "trigger_now", 0), 1);
+        master.bench.run_for(100 * US);
+        let (_, fresh, position, _) = result(&mut master, 0);
+        assert!(fresh && position == 0x155_32D3, "{moment}");
+    }
+    assert_eq!(wrong, 0);
 }
 
 const PORT: [&str; 2] = ["--port", "virtual:ssi_two_channel"];

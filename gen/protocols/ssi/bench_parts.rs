@@ -33,6 +33,7 @@ struct Port {
     odd: u8,
     bit_delay_ns: String,
     tm_ns: String,
+    late_ns: String,
     cable_ns: String,
     half_ns: String,
     first_low_ns: String,
@@ -56,6 +57,7 @@ impl Port {
             odd: u8::from(asked.parity == Parity::Odd),
             bit_delay_ns: whole(BIT_DELAY_NS),
             tm_ns: whole(channel.spec.recovery_max_ns),
+            late_ns: whole(late_ns(card, channel)),
             cable_ns: real(cable_ns.floor() - 0.7),
             half_ns: whole(ns(channel.period_cycles / 2)),
             first_low_ns: whole(ns(
@@ -66,10 +68,17 @@ impl Port {
     }
 }
 
+/// By how much a recovery time is too long for certain, in ns: the port waits from a period after the last edge on, and for the cable.
+fn late_ns(card: &CardConfig, channel: &ChannelConfig) -> u64 {
+    let cycles = 3 * channel.period_cycles + channel.recovery_limit_cycles;
+    cycles_to_ns(cycles, card.system_hz) - channel.spec.recovery_max_ns
+}
+
 /// What the bench of a card with SSI channels has besides.
 pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError> {
     let channels = card.channels.iter().enumerate();
     let speakers = channels.filter_map(|(n, c)| Some((n, c, c.spoken.ssi()?)));
+    let latest_ns = speakers.clone().map(|(_, c, _)| late_ns(card, c)).max();
     let frames = speakers.clone();
     let frames = frames.map(|(_, c, asked)| c.period_cycles * asked.clocks(c.position_bits));
     let shortest_cycles = frames.min().unwrap_or(0);
@@ -88,6 +97,8 @@ pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<Bench
         position_parity => cause::PARITY,
         copies_differ => cause::COPIES_DIFFER,
         trigger_overrun => cause::TRIGGER_OVERRUN,
+        recovery_too_long => cause::RECOVERY_TOO_LONG,
+        late_ns => whole(latest_ns.unwrap_or(0)),
         clock_pin_cycles => TIMESTAMP_TO_FIRST_FALL_CYCLES,
         system_ns => real(1e9 / card.system_hz as f64),
     };

@@ -4,10 +4,16 @@
 //! state    REST| LOW |HIGH | LOW |HIGH |  ...  | LOW |   LAST   |  RECOVERY   |REST
 //! clk   ~~~~~~~\_____/~~~~~\_____/~~~~~~  ...  \_____/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
 //! data  ~~~~~~~~~~~~~~< msb      >< ...     >< lsb   >\_________________/~~~~~~~~~~
-//!                                ^ taken             ^ taken    ^ LOW? result
+//!              HIGH? ^           ^ taken             ^ taken    ^ LOW? result   ^ HIGH? if not: withdrawn
 //! ```
 //!
 //! With `frame` bit 1 the clock goes on: a LOW bit, and the same position once more.
+//!
+//! `RECOVERY` ends when DATA is HIGH, since the encoder is ready then. After a reset, an upset, or a frame at whose end DATA was HIGH, it lasts
+//! for the whole recovery time: the encoder may be in the middle of a frame, where DATA is any of its bits.
+//!
+//! Guards against upsets: the codes of the states differ in two bits, the clock is what the state says, bits and the edge that takes none are
+//! counted twice, and a frame is good only if all of its bits have come.
 
 use super::cause;
 use crate::endat::features::Features;
@@ -55,6 +61,8 @@ pub struct SsiPort {
     pub busy: Signal<Out, Bit>,
     /// Strobe: a frame has ended.
     pub over: Signal<Out, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub displaced: Signal<Out, Bit>,
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
@@ -62,27 +70,35 @@ pub struct SsiPort {
     #[start]
     primary: LowestCause,
     snapshot: Snapshot,
-    state: Reg<Bits<3>>,
+    // As after a frame of which nothing is known: a reset may have come in the middle of one.
+    #[start(STATE_LAST.into())]
+    state: Reg<Bits<4>>,
     #[start(true)]
     clk: Reg<Bit>,
     timer: Reg<Bits<13>>,
     left: Reg<Bits<6>>,
     left_too: Reg<Bits<6>>,
     torn: Reg<Bit>,
-    latches: Reg<Bit>,
-    between: Reg<Bit>,
+    // The next rising edge brings no bit: the first one of a copy. In `LAST`: wait for another period.
+    #[start(true)]
+    first: Reg<Bit>,
+    #[start(true)]
+    first_too: Reg<Bit>,
     second: Reg<Bit>,
-    bit_before: Reg<Bit>,
     word: Reg<Bits<48>>,
     again: Reg<Bits<48>>,
     sum: Reg<Bit>,
     ones: Reg<Bit>,
     not_even: Reg<Bit>,
+    #[start(true)]
     not_low: Reg<Bit>,
     lost: Reg<Bit>,
+    // `displaced`.
+    is_lost: Reg<Bit>,
     slow: Reg<Bit>,
-    ended: Reg<Bit>,
     fallen: Reg<Bit>,
+    // With `not_low`: a reset has come, no frame.
+    #[start(true)]
     unknown: Reg<Bit>,
     not_high: Reg<Bit>,
     period: Signal<Local, Bits<11>>,
@@ -94,29 +110,47 @@ pub struct SsiPort {
     bits: Signal<Local, Bits<6>>,
     ends_copy: Signal<Local, Bit>,
     is_parity: Signal<Local, Bit>,
+    bit_before: Signal<Local, Bit>,
     value: Signal<Local, Bit>,
     is_other: Signal<Local, Bit>,
+    is_astray: Signal<Local, Bit>,
     is_torn: Signal<Local, Bit>,
+    is_short: Signal<Local, Bit>,
     is_upset: Signal<Local, Bit>,
+    publishes: Signal<Local, Bit>,
+    ready: Signal<Local, Bit>,
+    is_late: Signal<Local, Bit>,
     good: Signal<Local, Bit>,
+    loses: Signal<Local, Bit>,
+    found: Signal<Local, Bits<6>>,
     raised: Signal<Local, Bits<16>>,
-    at_rest: Constant<Bits<3>>,
-    at_low: Constant<Bits<3>>,
-    at_high: Constant<Bits<3>>,
-    at_last: Constant<Bits<3>>,
-    at_recovery: Constant<Bits<3>>,
+    at_rest: Constant<Bits<4>>,
+    at_low: Constant<Bits<4>>,
+    at_high: Constant<Bits<4>>,
+    at_last: Constant<Bits<4>>,
+    at_recovery: Constant<Bits<4>>,
+    at_judge: Constant<Bits<4>>,
 }
+
+/// Codes of the states. Each has an even number of ones, so that no upset of one bit makes another state.
+const STATE_REST: u64 = 0;
+const STATE_LOW: u64 = 3;
+const STATE_HIGH: u64 = 5;
+const STATE_LAST: u64 = 6;
+const STATE_RECOVERY: u64 = 9;
+const STATE_JUDGE: u64 = 10;
 
 impl Default for SsiPort {
     fn default() -> Self {
         Self::from_parts(SsiPortParts {
             filter: InputFilter::new(Features::NONE),
-            snapshot: Snapshot::new(cause::UPSET, cause::flag(cause::UPSET)),
-            at_rest: Constant::new(0.into()),
-            at_low: Constant::new(1.into()),
-            at_high: Constant::new(2.into()),
-            at_last: Constant::new(3.into()),
-            at_recovery: Constant::new(4.into()),
+            snapshot: Snapshot::without_earlier(cause::UPSET, cause::flag(cause::UPSET)),
+            at_rest: Constant::new(STATE_REST.into()),
+            at_low: Constant::new(STATE_LOW.into()),
+            at_high: Constant::new(STATE_HIGH.into()),
+            at_last: Constant::new(STATE_LAST.into()),
+            at_recovery: Constant::new(STATE_RECOVERY.into()),
+            at_judge: Constant::new(STATE_JUDGE.into()),
         })
     }
 }
@@ -134,6 +168,7 @@ impl Logic for SsiPort {
         self.time_clock();
         self.clock_frame();
         self.take_bits();
+        self.recover();
         self.judge();
         self.show_result();
     }
@@ -155,41 +190,43 @@ impl Logic for SsiPort {
 
     /// The clock, and whose turn it is.
     fn clock_frame(&mut self) {
-        self.ended.d.next = false;
         self.bits.next = self.position_bits.val();
         if self.frame.val().get_bit(3) {
             self.bits.next = self.position_bits.val() + 1;
         }
         self.ends_copy.next = !self.left.q.val().get_bits::<5>(1).any();
         // This rising edge takes the last bit of the frame.
-        self.is_last.next = !self.latches.q.val()
-            & !self.between.q.val()
+        self.is_last.next = !self.first.q.val()
             & self.ends_copy.val()
             & (self.second.q.val() | !self.frame.val().get_bit(1));
+        // No upset keeps the clock LOW.
+        self.clk.d.next = self.state.q.val() != self.at_low.val();
+        self.is_astray.next = self.state.q.val().xor()
+            ^ (self.clk.q.val() == (self.state.q.val() == self.at_low.val()));
         if self.state.q.val() == self.at_rest.val() {
             if self.trigger.val() {
                 self.unknown.d.next = !self.frame.val().get_bit(2);
                 self.not_high.d.next = !self.filter.level.val();
                 self.not_low.d.next = false;
-                self.latches.d.next = true;
-                self.between.d.next = false;
+                self.first.d.next = true;
+                self.first_too.d.next = true;
                 self.second.d.next = false;
-                self.bit_before.d.next = false;
                 self.sum.d.next = false;
                 self.ones.d.next = false;
                 self.not_even.d.next = false;
                 self.left.d.next = self.bits.val();
                 self.left_too.d.next = self.bits.val();
+                self.state.d.next = self.at_judge.val();
                 if self.frame.val().get_bit(2) & self.filter.level.val() {
                     self.clk.d.next = false;
                     self.state.d.next = self.at_low.val();
                     self.timer.d.next = bit_cast::<13, 11>(self.low_cycles.val())
                         + bit_cast::<13, 11>(self.first_low_extra_cycles.val())
                         - 1;
-                } else {
-                    self.ended.d.next = true;
                 }
             }
+        } else if self.state.q.val() == self.at_judge.val() {
+            self.state.d.next = self.at_recovery.val();
         } else if self.is_due.val() {
             if self.state.q.val() == self.at_low.val() {
                 self.clk.d.next = true;
@@ -204,36 +241,49 @@ impl Logic for SsiPort {
                 self.state.d.next = self.at_low.val();
                 self.timer.d.next = bit_cast::<13, 11>(self.low_cycles.val()) - 1;
             } else if self.state.q.val() == self.at_last.val() {
-                self.state.d.next = self.at_recovery.val();
-                self.timer.d.next = self.recovery_limit_cycles.val();
-                self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
-                self.ended.d.next = true;
+                self.first.d.next = false;
+                self.first_too.d.next = false;
+                self.timer.d.next = bit_cast::<13, 11>(self.period.val()) - 1;
+                if !self.first.q.val() {
+                    self.state.d.next = self.at_judge.val();
+                    self.timer.d.next = self.recovery_limit_cycles.val();
+                    self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
+                }
             } else {
                 // Whatever the line does: a trigger looks at it again.
                 self.state.d.next = self.at_rest.val();
-                self.slow.d.next =
-                    (self.state.q.val() == self.at_recovery.val()) & !self.filter.level.val();
             }
         }
-        // The encoder is ready again.
-        if (self.state.q.val() == self.at_recovery.val()) & self.filter.level.val() {
+        if self.ready.val() {
             self.state.d.next = self.at_rest.val();
+        }
+        // An upset ends the frame.
+        if self.is_astray.val() {
+            self.clk.d.next = true;
+            self.state.d.next = self.at_last.val();
         }
     }
 
-    /// What the line says at each rising edge of the clock but the first, most significant bit first.
+    /// What the line says at each rising edge of the clock but the first of a copy, most significant bit first.
     fn take_bits(&mut self) {
-        self.takes_bit.next = (self.state.q.val() == self.at_low.val())
-            & self.is_due.val()
-            & !self.latches.q.val()
-            & !self.between.q.val();
+        self.takes_bit.next =
+            (self.state.q.val() == self.at_low.val()) & self.is_due.val() & !self.first.q.val();
+        self.bit_before.next = self.word.q.val().get_bit(0);
+        if self.second.q.val() {
+            self.bit_before.next = self.again.q.val().get_bit(0);
+        }
         self.value.next =
-            self.filter.level.val() ^ (self.bit_before.q.val() & self.frame.val().get_bit(0));
+            self.filter.level.val() ^ (self.bit_before.val() & self.frame.val().get_bit(0));
         if (self.state.q.val() == self.at_low.val()) & self.is_due.val() {
-            self.latches.d.next = false;
-            self.between.d.next = false;
-            if self.between.q.val() {
-                self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
+            self.first.d.next = false;
+            self.first_too.d.next = false;
+            // HIGH before the first bit, LOW between two copies.
+            if self.first.q.val() {
+                if self.second.q.val() {
+                    self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
+                } else {
+                    self.not_high.d.next = !self.filter.level.val();
+                }
             }
         }
         self.is_parity.next = self.frame.val().get_bit(3) & self.ends_copy.val();
@@ -246,7 +296,6 @@ impl Logic for SsiPort {
                 self.not_even.d.next = self.not_even.q.val()
                     | (self.ones.q.val() ^ self.filter.level.val() ^ self.frame.val().get_bit(4));
             } else {
-                self.bit_before.d.next = self.value.val();
                 if self.second.q.val() {
                     self.again.d.next =
                         (self.again.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
@@ -257,10 +306,10 @@ impl Logic for SsiPort {
                 }
             }
             // The second copy begins as the first one.
-            if self.ends_copy.val() & !self.second.q.val() {
+            if self.ends_copy.val() & !self.second.q.val() & self.frame.val().get_bit(1) {
                 self.second.d.next = true;
-                self.between.d.next = true;
-                self.bit_before.d.next = false;
+                self.first.d.next = true;
+                self.first_too.d.next = true;
                 self.ones.d.next = false;
                 self.left.d.next = self.bits.val();
                 self.left_too.d.next = self.bits.val();
@@ -272,34 +321,68 @@ impl Logic for SsiPort {
         }
     }
 
+    /// How the recovery time ends.
+    fn recover(&mut self) {
+        // The encoder is ready again, if DATA was LOW before.
+        self.ready.next = (self.state.q.val() == self.at_recovery.val())
+            & self.filter.level.val()
+            & !self.not_low.q.val()
+            & !self.torn.q.val();
+        // DATA is LOW for another reason than the end of a frame: the position may be wrong.
+        self.is_late.next = (self.state.q.val() == self.at_recovery.val())
+            & self.is_due.val()
+            & !self.filter.level.val()
+            & self.good.val();
+    }
+
     /// What the frame is worth: a bit for each cause, in the order of their codes.
     fn judge(&mut self) {
         self.busy.next = self.state.q.val() != self.at_rest.val();
+        self.publishes.next = (self.state.q.val() == self.at_judge.val())
+            & !(self.unknown.q.val() & self.not_low.q.val());
         // A trigger that was not taken is told by the result of the frame under way, or of the next one.
-        if self.ended.q.val() {
+        if self.publishes.val() {
             self.lost.d.next = false;
             self.slow.d.next = false;
         }
-        if self.trigger.val() & (self.state.q.val() != self.at_rest.val()) {
+        self.loses.next = self.trigger.val() & (self.state.q.val() != self.at_rest.val());
+        self.is_lost.d.next = self.loses.val();
+        self.displaced.next = self.is_lost.q.val();
+        if self.loses.val() {
             self.lost.d.next = true;
+        }
+        if self.is_late.val() {
+            self.slow.d.next = true;
         }
         self.is_other.next =
             self.frame.val().get_bit(1) & (self.word.q.val() != self.again.q.val());
         // The bits are counted twice: a copy that is short by one fits the next one that begins a bit too soon.
-        self.is_torn.next = self.torn.q.val() | (self.left.q.val() != self.left_too.q.val());
-        self.torn.d.next = self.is_torn.val() & (self.state.q.val() != self.at_rest.val());
+        self.is_torn.next = self.torn.q.val()
+            | self.is_astray.val()
+            | (self.left.q.val() != self.left_too.q.val())
+            | (self.first.q.val() != self.first_too.q.val());
+        self.torn.d.next = self.is_torn.val()
+            & (self.is_astray.val() | (self.state.q.val() != self.at_rest.val()));
+        // All bits have come, in as many copies as were asked for.
+        self.is_short.next = (self.left.q.val().any()
+            | (self.second.q.val() ^ self.frame.val().get_bit(1)))
+            & !self.unknown.q.val()
+            & !self.not_high.q.val();
         // What is stored is what came.
-        self.is_upset.next = self.is_torn.val() | (self.word.q.val().xor() ^ self.sum.q.val());
-        self.raised.next = bit_cast::<16, 1>(self.unknown.q.val().into())
-            | (bit_cast::<16, 1>(self.not_high.q.val().into()) << 1)
-            | (bit_cast::<16, 1>(self.not_low.q.val().into()) << 2)
-            | (bit_cast::<16, 1>(self.not_even.q.val().into()) << 3)
-            | (bit_cast::<16, 1>(self.is_other.val().into()) << 4)
-            | (bit_cast::<16, 1>(self.is_upset.val().into()) << 5)
-            | (bit_cast::<16, 1>(self.lost.q.val().into()) << 6)
-            | (bit_cast::<16, 1>(self.slow.q.val().into()) << 7);
+        self.is_upset.next =
+            self.is_torn.val() | self.is_short.val() | (self.word.q.val().xor() ^ self.sum.q.val());
+        self.found.next = bit_cast::<6, 1>(self.unknown.q.val().into())
+            | (bit_cast::<6, 1>(self.not_high.q.val().into()) << 1)
+            | (bit_cast::<6, 1>(self.not_low.q.val().into()) << 2)
+            | (bit_cast::<6, 1>(self.not_even.q.val().into()) << 3)
+            | (bit_cast::<6, 1>(self.is_other.val().into()) << 4)
+            | (bit_cast::<6, 1>(self.is_upset.val().into()) << 5);
+        self.good.next = !self.found.val().any();
+        // A lost trigger is for the next result, not for what has become of this one.
+        self.raised.next = bit_cast::<16, 6>(self.found.val())
+            | (bit_cast::<16, 1>((self.lost.q.val() & !self.is_late.val()).into()) << 6)
+            | (bit_cast::<16, 1>((self.slow.q.val() | self.is_late.val()).into()) << 7);
         self.primary.flags.next = self.raised.val();
-        self.good.next = !self.raised.val().get_bits::<6>(0).any();
     }
 
     /// The last good position, and why there is no newer one.
@@ -307,14 +390,15 @@ impl Logic for SsiPort {
         connect!(self.snapshot <= self; tick_us, timestamp);
         self.fallen.d.next =
             (self.fallen.q.val() | !self.clk.q.val()) & (self.state.q.val() != self.at_rest.val());
-        self.snapshot.first_fall.next = !self.clk.q.val() & !self.fallen.q.val();
+        self.snapshot.first_fall.next =
+            !self.clk.q.val() & !self.fallen.q.val() & self.first.q.val();
         self.snapshot.latched.next = false;
         self.snapshot.delay_cycles.next = 0.into();
-        self.snapshot.told.publish.next = self.ended.q.val();
-        self.snapshot.told.good.next = self.ended.q.val() & self.good.val();
-        // All that a frame shows is seen before its result.
-        self.snapshot.told.late_fault.next = false;
-        self.snapshot.told.withdraw.next = false;
+        self.snapshot.told.publish.next = self.publishes.val();
+        self.snapshot.told.good.next = self.publishes.val() & self.good.val();
+        self.snapshot.told.late_fault.next = self.is_late.val();
+        self.snapshot.told.withdraw.next = self.is_late.val();
+        // The age counts from the result on.
         self.snapshot.told.confirm.next = true;
         self.snapshot.width_in.next = 0.into();
         self.snapshot.has_f2_in.next = false;
@@ -323,7 +407,7 @@ impl Logic for SsiPort {
         self.snapshot.crc_computed_in.next = 0.into();
         self.snapshot.told.cause_told.next = self.primary.cause.val();
         self.snapshot.told.flags_told.next = bit_cast::<20, 16>(self.raised.val());
-        self.over.next = self.ended.q.val();
+        self.over.next = self.publishes.val();
         self.ssi_clk.next = self.clk.q.val();
         FrameResultOut::link(&mut self.result, &mut self.snapshot.result);
     }

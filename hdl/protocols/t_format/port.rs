@@ -61,6 +61,8 @@ pub struct TFormatPort {
     pub over: Signal<Out, Bit>,
     /// It was the host's.
     pub over_request: Signal<Out, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub displaced: Signal<Out, Bit>,
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
@@ -87,6 +89,8 @@ pub struct TFormatPort {
     rest: Reg<Bits<2>>,
     started: Reg<Bit>,
     lost: Reg<Bit>,
+    // `displaced`.
+    is_lost: Reg<Bit>,
     own: Reg<Bit>,
     own_too: Reg<Bit>,
     armed: Reg<Bit>,
@@ -122,6 +126,7 @@ pub struct TFormatPort {
     sends: Signal<Local, Bit>,
     takes: Signal<Local, Bit>,
     overrun: Signal<Local, Bit>,
+    loses: Signal<Local, Bit>,
     sum_flags: Signal<Local, Bits<16>>,
     flags_in: Signal<Local, Bits<16>>,
     code: Signal<Local, Bits<5>>,
@@ -134,7 +139,7 @@ impl Default for TFormatPort {
     fn default() -> Self {
         Self::from_parts(TFormatPortParts {
             filter: InputFilter::new(Features::NONE),
-            snapshot: Snapshot::new(cause::UPSET, cause::flag(cause::UPSET)),
+            snapshot: Snapshot::without_earlier(cause::UPSET, cause::flag(cause::UPSET)),
         })
     }
 }
@@ -261,7 +266,10 @@ impl Logic for TFormatPort {
         if self.exchange.publish.val() & !self.is_own.val() {
             self.lost.d.next = false;
         }
-        if self.trigger.val() & self.is_busy.val() {
+        self.loses.next = self.trigger.val() & self.is_busy.val();
+        self.is_lost.d.next = self.loses.val();
+        self.displaced.next = self.is_lost.q.val();
+        if self.loses.val() {
             self.lost.d.next = true;
         }
         // What is stored is what came, and it is known for whom.

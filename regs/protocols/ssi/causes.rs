@@ -9,10 +9,10 @@ crate::causes::cause::causes! {
         "config<n>.frame.command of an SSI channel has no bit 2, or what a host wrote to the configuration was disturbed; nothing was clocked.",
         "Write the configuration again: 4 to config<n>.frame.command, 5 for Gray code, 6 and 7 for the same twice.";
     DATA_NOT_HIGH = 2, "data_not_high", "data not high before the frame";
-        "The DATA line of an SSI encoder was LOW when a frame was to begin: it still held the last position, has no supply, or the pair is swapped or shorted. Nothing was clocked.",
+        "The DATA line of an SSI encoder was LOW when a frame was to begin, and nothing was clocked, or at the first rising edge of CLOCK: it still held the last position, has no supply, or the pair is swapped or shorted.",
         "Look at plug, supply and pair; trigger more slowly, and compare recovery_max_ns with the encoder's monoflop time.";
     DATA_NOT_LOW_AFTER = 3, "data_not_low_after", "data not low after the last bit";
-        "DATA was HIGH behind the last bit, or between two copies: nothing is plugged in, the encoder has more bits than configured, or its bits come too late for this clock.",
+        "DATA was HIGH after the last bit, or between two copies: nothing is plugged in, the encoder has another width than configured, or its bits come too late for this clock.",
         "Look at plug and supply; compare position_bits with the data sheet; lower clock_hz.";
     PARITY = 4, "position_parity", "parity of the position";
         "The parity bit behind the position does not fit it: a bit was disturbed, or the encoder has no parity, or the other one.",
@@ -25,8 +25,8 @@ crate::causes::cause::causes! {
     TRIGGER_OVERRUN = 7, "trigger_overrun", "trigger overrun";
         same;
     RECOVERY_TOO_LONG = 8, "recovery_too_long", "recovery time too long";
-        "Behind the frame before, DATA was still LOW after recovery_max_ns: a trigger at the highest rate would meet the encoder there. The position is good.",
-        "Raise recovery_max_ns to the encoder's monoflop time.";
+        "After a frame DATA was still LOW when recovery_max_ns had passed: the line is broken or shorted, or the encoder needs longer than configured. The position of that frame is withdrawn. The next result says so, too; its own position is good.",
+        "Look at plug and pair; raise recovery_max_ns to the encoder's monoflop time.";
 }
 
 /// Codes there are.

@@ -1,6 +1,6 @@
 //! The port at its encoder, at the ends of what a configuration allows.
 
-use super::{bench, design, link};
+use super::{bench, design, link, power_up};
 use endat_hdl::config::{ChannelConfig, ChannelSpec};
 use endat_hdl::protocols::ssi::asked::Parity;
 use endat_hdl::protocols::ssi::cause;
@@ -60,7 +60,7 @@ fn run(config: &ChannelConfig, encoder: EncoderConfig, delay_ns: u64, frames: us
     };
     let mut bench = bench(&design(), SYSTEM_HZ, encoder, delay_ns * NS);
     configure(&mut bench, config);
-    bench.power_up();
+    power_up(&mut bench);
     bench.run_for(US);
     for n in 0..frames {
         bench.trigger();
@@ -158,7 +158,7 @@ fn the_limit_of_the_delay_is_one() {
         0,
     );
     configure(&mut bench, &config);
-    bench.power_up();
+    power_up(&mut bench);
     bench.run_for(US);
     let mut wrong = 0;
     for _ in 0..20 {
@@ -196,7 +196,7 @@ fn what_is_wrong_is_told_and_forgotten() {
             100 * NS,
         );
         configure(&mut bench, &config);
-        bench.power_up();
+        power_up(&mut bench);
         bench.run_for(US);
         let mut last = 0;
         for round in 0..60 {

@@ -1,8 +1,12 @@
 //! SSI: the port at its encoder.
 
+mod broken;
 mod line;
+mod reset;
+mod run;
 mod three_ways;
 mod upsets;
+mod width;
 
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::regs::Protocol;
@@ -37,6 +41,14 @@ fn bench(design: &Design, system_hz: u64, config: EncoderConfig, delay: Time) ->
     link.set_motion(Arc::new(shaft));
     bench.add_other(&PinNames::channel(), Box::new(link));
     bench
+}
+
+/// From power-up until a trigger is taken: the encoder may be in the middle of a frame.
+fn power_up(bench: &mut Bench<Compiled>) {
+    bench.power_up();
+    while bench.get("busy") != 0 {
+        bench.run_cycles(10);
+    }
 }
 
 /// The encoder on it.

@@ -1,6 +1,6 @@
 //! A port for SSI at work with its encoder: kernels, engines and emitted Verilog agree in every cycle.
 
-use super::{bench, block, design, link};
+use super::{bench, block, design, link, power_up};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::protocols::ssi::cause;
 use endat_hdl::protocols::ssi::port::frame;
@@ -41,7 +41,7 @@ fn recorded(frames: &Frames) -> Stimulus {
     ] {
         bench.set(name, value);
     }
-    bench.power_up();
+    power_up(&mut bench);
     bench.run_for(5 * US);
     for round in 0..frames.rounds {
         if bench.get("busy") == 0 {
@@ -127,7 +127,7 @@ fn kernels_engines_and_verilog_agree_on_longer_frames() {
         recovery_limit_cycles: 400,
         waits_us: [4, 70],
         rounds: 60,
-        seed: 3,
+        seed: 0,
     };
     agree("ssi_port_long", &long, 10);
 }

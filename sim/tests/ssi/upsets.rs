@@ -1,12 +1,9 @@
 //! Every state that an SSI port can be brought into, reached or not: the next triggers work, and with two copies no wrong position goes out.
 
-use endat_hdl::protocols::ssi::port::SsiPort;
+use super::run::{Run, Settings};
 use endat_sim::rng::Rng;
-use endat_sim::ssi::{Encoder, EncoderConfig};
+use endat_sim::ssi::EncoderConfig;
 use endat_sim::US;
-use rtl_design::elaborate::elaborate;
-use rtl_design::engine::{Compiled, Engine, Keep};
-use rust_hdl::prelude::Block;
 
 /// Registers up to this width get every value, wider ones have each of their bits inverted.
 const ALL_VALUES_BITS: usize = 6;
@@ -14,110 +11,32 @@ const ALL_VALUES_BITS: usize = 6;
 const MOMENTS: u64 = 16;
 /// Triggers that may be lost or bad after one that was upset.
 const TRIGGERS: usize = 2;
-const SYSTEM_MHZ: u64 = 20;
 const WIDTH: u32 = 12;
 /// A frame of two copies and its recovery time, in cycles.
 const FRAME_CYCLES: u64 = 2 * (WIDTH as u64 + 1) * PERIOD + 400;
 const PERIOD: u64 = 24;
-/// The longest wait after an upset: a timer of 13 bits.
-const LIMIT_CYCLES: u64 = 10_000;
 const POSITION: u64 = 0xA6C;
 
-/// A port at its encoder.
-#[derive(Clone)]
-struct Run {
-    engine: Compiled,
-    encoder: Encoder,
-    cycle: u64,
-}
-
-impl Run {
-    fn new(frame: u128) -> Self {
-        let mut block = SsiPort::default();
-        block.connect_all();
-        let design = elaborate(&block, "port").unwrap();
-        let mut engine = Compiled::keeping(&design, Keep::Registers).unwrap();
-        for (name, value) in [
-            ("data_i", 1),
-            ("period_cycles", PERIOD.into()),
-            ("position_bits", WIDTH.into()),
-            ("filter_cycles", 1),
-            ("recovery_limit_cycles", 380),
-            ("frame", frame),
-        ] {
-            let port = engine.port(name);
-            engine.set(port, value);
-        }
-        let config = EncoderConfig {
-            position_bits: WIDTH,
-            position: POSITION,
-            tm: 15 * US,
-            pulse_min: 0,
-            ..EncoderConfig::default()
-        };
-        let mut run = Self {
-            engine,
-            encoder: Encoder::new(config),
-            cycle: 0,
-        };
-        run.cycles(40);
-        run
-    }
-
-    fn get(&mut self, name: &str) -> u128 {
-        let port = self.engine.port(name);
-        self.engine.get(port)
-    }
-
-    fn set(&mut self, name: &str, value: u128) {
-        let port = self.engine.port(name);
-        self.engine.set(port, value);
-    }
-
-    fn cycles(&mut self, count: u64) {
-        for _ in 0..count {
-            let now = self.cycle * US / SYSTEM_MHZ;
-            let clk = self.get("ssi_clk") == 1;
-            self.encoder.clock(now, clk);
-            let data = self.encoder.data();
-            self.set("data_i", data.into());
-            self.set("timestamp", self.cycle.into());
-            self.engine.tick();
-            self.cycle += 1;
-        }
-    }
-
-    fn trigger(&mut self) {
-        self.set("trigger", 1);
-        self.cycles(1);
-        self.set("trigger", 0);
-    }
-
-    /// Waits for the end of what is under way; false if there is none.
-    fn ends(&mut self) -> bool {
-        let last = self.cycle + LIMIT_CYCLES;
-        while self.get("busy") == 1 {
-            if self.cycle > last {
-                return false;
-            }
-            self.cycles(10);
-        }
-        true
-    }
-
-    /// One trigger, and whether it brought all that it should.
-    fn is_good(&mut self) -> bool {
-        self.trigger();
-        let ends = self.ends();
-        self.cycles(600);
-        let shown = ["position", "cause", "fresh"].map(|name| self.get(name));
-        ends && shown == [POSITION.into(), 0, 1]
-    }
+/// A port at an encoder that repeats its position.
+fn start() -> Run {
+    let encoder = EncoderConfig {
+        position_bits: WIDTH,
+        position: POSITION,
+        tm: 15 * US,
+        pulse_min: 0,
+        ..EncoderConfig::default()
+    };
+    let settings = Settings {
+        frame: 6,
+        period_cycles: PERIOD,
+        recovery_limit_cycles: 380,
+    };
+    Run::new(settings, encoder)
 }
 
 /// Upsets every register at all moments, or each value of it at one, another one for each.
 fn the_next_triggers_work(all_moments: bool, count_min: usize) {
-    let start = Run::new(6);
+    let start = start();
     assert!(start.clone().is_good());
     let names: Vec<String> = start.engine.nets().map(String::from).collect();
     let registers: Vec<usize> = start.engine.registers().collect();

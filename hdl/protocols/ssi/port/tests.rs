@@ -36,8 +36,16 @@ impl Rig {
             rises: vec![],
             recovery: 100,
         };
-        rig.steps(20);
+        rig.ready();
         rig
+    }
+
+    /// After a reset the encoder may be in the middle of a frame.
+    fn ready(&mut self) {
+        self.steps(20);
+        while self.uut.busy.val() {
+            self.steps(1);
+        }
     }
 
     fn steps(&mut self, cycles: u64) {
@@ -244,7 +252,7 @@ fn a_parity_bit_that_does_not_fit_has_its_cause() {
 fn a_line_that_is_low_is_not_clocked() {
     let mut rig = Rig::new(4, 12);
     rig.recovery = 1_000_000;
-    assert_eq!(rig.frame(bits(0xA53, 12)), cause::NONE);
+    assert_eq!(rig.frame(bits(0xA53, 12)), cause::RECOVERY_TOO_LONG);
     let before = rig.uut.result.sequence.val();
     assert_eq!(rig.frame(bits(0xA53, 12)), cause::DATA_NOT_HIGH);
     assert!(rig.falls.is_empty());
@@ -262,7 +270,11 @@ fn a_trigger_within_frame_or_recovery_is_lost_and_told_once() {
     rig.bits = bits(0x123, 12);
     rig.trigger();
     rig.steps(50);
+    assert!(!rig.uut.displaced.val());
     rig.trigger();
+    assert!(rig.uut.displaced.val());
+    rig.steps(1);
+    assert!(!rig.uut.displaced.val(), "a strobe");
     rig.steps(3_000);
     assert_eq!(rig.uut.result.cause.val().to_u64(), cause::TRIGGER_OVERRUN);
     assert!(rig.is_fresh(), "its position is good");
@@ -299,16 +311,18 @@ fn settings_out_of_their_range_end_in_a_result() {
 }
 
 #[test]
-fn a_recovery_time_beyond_its_limit_is_told_by_the_next_result() {
+fn recovery_time_beyond_its_limit_withdraws_the_position_and_is_reported_by_the_next_result() {
     let mut rig = Rig::new(4, 12);
     rig.recovery = 260;
     assert_eq!(rig.frame(bits(0xA53, 12)), cause::NONE);
     assert_eq!(rig.frame(bits(0xA53, 12)), cause::NONE, "within its limit");
     rig.recovery = 500;
+    // Its position is withdrawn.
+    assert_eq!(rig.frame(bits(0xA53, 12)), cause::RECOVERY_TOO_LONG);
+    assert!(!rig.is_fresh() && !rig.uut.result.position_valid.val());
     assert_eq!(
-        rig.frame(bits(0xA53, 12)),
-        cause::NONE,
-        "its result is out before"
+        rig.uut.result.flags.val().to_u64(),
+        cause::flag(cause::RECOVERY_TOO_LONG)
     );
     rig.recovery = 100;
     assert_eq!(rig.frame(bits(0x5A3, 12)), cause::RECOVERY_TOO_LONG);

@@ -1,0 +1,126 @@
+//! A reset in the middle of a frame: no wrong position afterwards, whenever the next trigger comes.
+
+use super::run::{Run, Settings, SYSTEM_MHZ};
+use endat_sim::rng::Rng;
+use endat_sim::ssi::EncoderConfig;
+use endat_sim::US;
+
+const PERIOD: u64 = 20;
+const WIDTH: u32 = 25;
+/// Recovery time of the encoder, and the longest one that the port is set to, in microseconds.
+const TM_US: u64 = 19;
+const RECOVERY_MAX_US: u64 = 20;
+/// The alternating bits are other ones wherever a frame is cut.
+const POSITION: u64 = 0x155_32D3;
+
+fn start(twice: bool, repeats: bool) -> Run {
+    let encoder = EncoderConfig {
+        position_bits: WIDTH,
+        position: POSITION,
+        repeats,
+        tm: TM_US * US,
+        ..EncoderConfig::default()
+    };
+    let settings = Settings {
+        frame: if twice { 6 } else { 4 },
+        period_cycles: PERIOD,
+        recovery_limit_cycles: RECOVERY_MAX_US * SYSTEM_MHZ + 10,
+    };
+    Run::new(settings, encoder)
+}
+
+/// Resets the port at so many moments of a frame, triggers it up to 10 us later, and again and again.
+fn no_position_is_wrong_after_a_reset(moments: u64) {
+    let mut rng = Rng::new(47);
+    let (mut count, mut good) = (0, 0);
+    let mut wrong = vec![];
+    for (twice, repeats) in [(false, false), (false, true), (true, true)] {
+        let start = start(twice, repeats);
+        assert!(start.clone().is_good());
+        let clocks = u64::from(WIDTH + 1) * (1 + u64::from(twice));
+        let frame = clocks * PERIOD + RECOVERY_MAX_US * SYSTEM_MHZ;
+        for moment in 0..moments {
+            let cycle = rng.in_range(moment * frame / moments, (moment + 1) * frame / moments - 1);
+            let mut run = start.clone();
+            run.trigger();
+            run.cycles(cycle);
+            run.reset();
+            // Triggers that are lost change nothing.
+            for _ in 0..4 {
+                run.cycles(rng.in_range(0, 10 * SYSTEM_MHZ));
+                let before = run.get("sequence");
+                run.trigger();
+                run.cycles(clocks * PERIOD + 2 * PERIOD);
+                let shown = run.fresh();
+                if shown.is_some_and(|position| position != POSITION) {
+                    wrong.push(format!("{twice} {repeats} {cycle}: {shown:x?}"));
+                }
+                good += u64::from(run.get("sequence") != before && shown.is_some());
+            }
+            assert!(run.ends() && run.is_good(), "{twice} {repeats} {cycle}");
+            count += 1;
+        }
+    }
+    assert!(good > count, "{good} of {count} frames are triggered soon");
+    assert!(wrong.is_empty(), "{} of {count}: {wrong:#?}", wrong.len());
+}
+
+#[test]
+fn port_shows_no_wrong_position_after_a_reset_in_mid_frame() {
+    no_position_is_wrong_after_a_reset(120);
+}
+
+#[test]
+#[ignore = "slow: a reset at 10 000 moments of a frame"]
+fn port_shows_no_wrong_position_after_a_reset_at_any_moment() {
+    no_position_is_wrong_after_a_reset(3_400);
+}
+
+/// The wait is the longest recovery time and a period, not less and not much more.
+#[test]
+fn port_takes_no_trigger_after_a_reset_until_the_recovery_time_has_passed() {
+    let mut run = start(false, true);
+    run.reset();
+    let mut waited = 0;
+    while run.get("busy") == 1 {
+        run.cycles(1);
+        waited += 1;
+        assert!(waited < 1_000);
+    }
+    let needed = RECOVERY_MAX_US * SYSTEM_MHZ + PERIOD;
+    assert!((needed..needed + 30).contains(&waited), "{waited}");
+    // A trigger within it is lost, and the next result says so.
+    run.reset();
+    run.cycles(50);
+    run.trigger();
+    assert!(run.ends());
+    assert_eq!(run.get("sequence"), 0, "a reset has no result");
+    run.trigger();
+    assert!(run.ends());
+    assert_eq!(run.get("cause"), 7);
+    assert_eq!(run.fresh(), Some(POSITION));
+}
+
+/// An encoder with more bits is in the middle of its frame when the port has all it wants; DATA that is HIGH there is one of its bits.
+#[test]
+fn port_waits_after_a_frame_whose_end_is_high() {
+    let mut run = start(false, true);
+    // The bit after the last one that is asked for is HIGH.
+    run.set("position_bits", 18);
+    run.trigger();
+    run.cycles(19 * PERIOD + 2 * PERIOD);
+    assert_eq!(run.get("cause"), 3);
+    assert_eq!(run.get("busy"), 1);
+    let mut waited = 0;
+    while run.get("busy") == 1 {
+        run.cycles(1);
+        waited += 1;
+    }
+    assert!(
+        waited >= RECOVERY_MAX_US * SYSTEM_MHZ - 2 * PERIOD,
+        "{waited}"
+    );
+    // The frame before has left the encoder.
+    run.set("position_bits", WIDTH.into());
+    assert!(run.is_good());
+}

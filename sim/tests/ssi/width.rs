@@ -1,0 +1,124 @@
+//! A port that is set to another width than its encoder has: what a frame shows of it, and what it cannot show. docs/ssi.md has the table.
+
+use super::run::{Run, Settings, SYSTEM_MHZ};
+use endat_hdl::protocols::ssi::cause;
+use endat_sim::rng::Rng;
+use endat_sim::ssi::EncoderConfig;
+use endat_sim::US;
+
+const PERIOD: u64 = 20;
+/// Width that the port is set to.
+const WIDTH: u32 = 25;
+
+fn start(encoder_bits: u32, repeats: bool, twice: bool) -> Run {
+    let encoder = EncoderConfig {
+        position_bits: encoder_bits,
+        repeats,
+        tm: 18 * US,
+        ..EncoderConfig::default()
+    };
+    let settings = Settings {
+        frame: if twice { 6 } else { 4 },
+        period_cycles: PERIOD,
+        recovery_limit_cycles: 20 * SYSTEM_MHZ,
+    };
+    let mut run = Run::new(settings, encoder);
+    run.set("position_bits", WIDTH.into());
+    run
+}
+
+/// Bit of an encoder's word, the first one that is sent first.
+fn bit(position: u64, encoder_bits: u32, place: u32) -> bool {
+    position >> (encoder_bits - 1 - place) & 1 == 1
+}
+
+/// What is on the line where DATA should be LOW after the last bit: HIGH shows the wrong width.
+fn is_high_at_the_end(position: u64, encoder_bits: u32, repeats: bool) -> bool {
+    match encoder_bits {
+        // The next one of its bits.
+        more if more > WIDTH => bit(position, encoder_bits, WIDTH),
+        // A bit of the next copy, which begins after a LOW cell.
+        _ if repeats => bit(position, encoder_bits, WIDTH - encoder_bits - 1),
+        _ => false,
+    }
+}
+
+/// Triggers with random positions; gives how many were taken, and checks that those are exactly the ones that the line does not show.
+fn taken(encoder_bits: u32, repeats: bool, frames: u32) -> u32 {
+    let mut rng = Rng::new(u64::from(encoder_bits));
+    let mut run = start(encoder_bits, repeats, false);
+    let mut taken = 0;
+    for _ in 0..frames {
+        let position = rng.next_u64() & ((1 << encoder_bits) - 1);
+        run.encoder.config.position = position;
+        run.trigger();
+        assert!(run.ends());
+        let is_seen = is_high_at_the_end(position, encoder_bits, repeats);
+        let told = match is_seen {
+            true => cause::DATA_NOT_LOW_AFTER,
+            false => cause::NONE,
+        };
+        let what = format!("{encoder_bits} bits, repeats {repeats}, {position:#x}");
+        assert_eq!(run.get("cause"), u128::from(told), "{what}");
+        assert_eq!(run.fresh().is_none(), is_seen, "{what}");
+        taken += u32::from(!is_seen);
+    }
+    taken
+}
+
+/// Without `twice` the cell after the last bit is all that there is: an encoder with fewer bits that stays LOW cannot be told from one with
+/// zeros at the end, everything else shows in half of the positions.
+#[test]
+fn wrong_width_is_seen_where_the_cell_after_the_last_bit_is_high() {
+    for encoder_bits in [23, 24] {
+        assert_eq!(taken(encoder_bits, false, 40), 40, "never seen");
+    }
+    for (encoder_bits, repeats) in [
+        (26, false),
+        (27, false),
+        (33, false),
+        (26, true),
+        (24, true),
+        (23, true),
+    ] {
+        let taken = taken(encoder_bits, repeats, 60);
+        assert!(
+            (15..45).contains(&taken),
+            "{encoder_bits} {repeats}: {taken}"
+        );
+    }
+}
+
+/// With `twice` it is seen in every frame, but for positions in which the shifted copies are the same.
+#[test]
+fn wrong_width_is_seen_in_every_frame_with_two_copies() {
+    for encoder_bits in [22, 23, 24, 26, 27, 33] {
+        for repeats in [false, true] {
+            let mut rng = Rng::new(u64::from(encoder_bits));
+            let mut run = start(encoder_bits, repeats, true);
+            for _ in 0..40 {
+                run.encoder.config.position = rng.next_u64() & ((1 << encoder_bits) - 1);
+                run.trigger();
+                assert!(run.ends());
+                let what = format!("{encoder_bits} bits, repeats {repeats}");
+                assert_ne!(run.get("cause"), 0, "{what}");
+                assert_eq!(run.fresh(), None, "{what}");
+            }
+        }
+    }
+}
+
+/// DATA that is LOW at the first rising edge, before the first bit, is no encoder that has begun.
+#[test]
+fn data_that_falls_before_the_first_bit_is_reported() {
+    let mut run = start(WIDTH, false, false);
+    run.encoder.config.position = 0x155_5555;
+    run.trigger();
+    run.cycles(2);
+    run.broken = Some(false);
+    run.cycles(PERIOD);
+    run.broken = None;
+    assert!(run.ends());
+    assert_eq!(run.get("cause"), u128::from(cause::DATA_NOT_HIGH));
+    assert_eq!(run.fresh(), None);
+}
