@@ -2,7 +2,10 @@
 import sigrokdecode as srd
 
 FIELD_BITS = 10
-SYNC = 0b010
+# A header is a start bit and a sync bit LOW, one HIGH and one LOW; LOW for less or for longer is none.
+HEADER_LOW = (1.5, 2.5)
+# Bits of SF: the encoder has seen a parity or a delimiter error in the request.
+REQUEST_ERRORS = 0xC0
 
 POSITION = ("CF", "SF", "ABS", "ABS", "ABS", "CRC")
 # What each ID sends and what it is answered, and what it is for.
@@ -17,12 +20,20 @@ REQUESTS = {
     0xC: ("reset multi-turn", ("CF",), POSITION),
     0xD: ("read EEPROM", ("CF", "ADF", "CRC"), ("CF", "ADF", "EDF", "CRC")),
 }
-REQUEST, REPLY, STATUS, POSITIONS, MEMORY, CRC, WARNING = range(7)
+REQUEST, REPLY, STATUS, POSITIONS, MEMORY, CRC, WARNING, REFUSED = range(8)
 NUMBERS = {"ABS": "Single-turn", "ABM": "Multi-turn"}
 
 
+def checksum(values):
+    """x^8 + 1: all bytes exclusively ored."""
+    total = 0
+    for value in values:
+        total ^= value
+    return total
+
+
 class Cut(Exception):
-    """The line has stayed HIGH where a field should follow."""
+    """The exchange does not go on; says why."""
 
 
 class Decoder(srd.Decoder):
@@ -49,9 +60,10 @@ class Decoder(srd.Decoder):
         ("memory", "EEPROM"),
         ("crc", "CRC"),
         ("warning", "Warning"),
+        ("refused", "Refused"),
     )
     annotation_rows = (
-        ("fields", "Fields", (REQUEST, REPLY, STATUS, POSITIONS, MEMORY, CRC)),
+        ("fields", "Fields", (REQUEST, REPLY, STATUS, POSITIONS, MEMORY, CRC, REFUSED)),
         ("warnings", "Warnings", (WARNING,)),
     )
 
@@ -77,71 +89,141 @@ class Decoder(srd.Decoder):
         self.cell = self.samplerate / self.options["bitrate"]
         if self.cell < 4:
             raise srd.DecoderError("Needs four samples in a bit.")
+        # Longer HIGH than within an exchange.
+        self.quiet = int(FIELD_BITS * self.cell) + self.samples("field_gap_us")
+        self.settle("Capture begins within an exchange")
         while True:
-            self.wait({0: "f"})
             try:
                 self.exchange()
-            except Cut:
-                self.put_text(self.samplenum - 1, self.samplenum, WARNING, ["Field missing"])
+            except Cut as cut:
+                self.warn(self.samplenum - 1, self.samplenum, str(cut))
+                self.settle()
 
     def samples(self, option):
         return int(self.options[option] * self.samplerate / 1e6)
 
-    def at(self, begin, cells):
-        """The line so many cells behind a field's beginning."""
-        skip = int(begin + cells * self.cell) - self.samplenum
-        return self.wait({"skip": skip})[0] if skip > 0 else self.wait({"skip": 0})[0]
+    def warn(self, begin, end, text):
+        self.put_text(int(begin), int(end), WARNING, [text])
 
-    def field(self):
-        """The field whose start bit has just begun; each is timed by its own."""
-        begin, value = self.samplenum, 0
-        for bit in range(8):
-            value |= self.at(begin, bit + 1.5) << bit
-        delimiter = self.at(begin, FIELD_BITS - 0.5)
+    def settle(self, text="Skipped"):
+        """Until the line has been HIGH for longer than within an exchange; this text is for what was on it."""
+        pins, begin, is_quiet = self.wait({"skip": 0}), self.samplenum, True
+        while True:
+            if not pins[0]:
+                self.wait({0: "h"})
+                is_quiet = False
+            pins = self.wait([{0: "f"}, {"skip": self.quiet}])
+            if not self.matched[0]:
+                break
+        if not is_quiet:
+            self.warn(begin, self.samplenum - self.quiet, text)
+
+    def until(self, time):
+        """The line at this sample. Levels that change twice within half a bit are noted."""
+        level, time = self.wait({"skip": 0})[0], int(time)
+        while self.samplenum < time:
+            level = self.wait([{0: "e"}, {"skip": time - self.samplenum}])[0]
+            if self.matched[0]:
+                if self.samplenum - self.edge < self.cell / 2:
+                    self.is_short = True
+                    self.warn(self.edge, self.samplenum, "Pulse shorter than half a bit")
+                self.edge = self.samplenum
+        return level
+
+    def begin(self, limit, text):
+        """The falling edge of a field, before this sample; without one it takes as long as it does."""
+        conditions = [{0: "f"}]
+        if limit is not None:
+            conditions.append({"skip": max(1, limit - self.samplenum)})
+        self.wait(conditions)
+        if not self.matched[0]:
+            raise Cut(text)
+        self.edge = self.samplenum
+        return self.edge
+
+    def header(self, limit=None):
+        """A control field. The edge between its two sync bits is its mark and times it; shorter LOW pulses are passed over."""
+        while True:
+            fell = self.begin(limit, "")
+            self.wait({0: "r"})
+            low = (self.samplenum - fell) / self.cell
+            if low >= HEADER_LOW[0]:
+                break
+            self.warn(fell, self.samplenum, "LOW for {:.0f} ns".format(low * self.cell * 1e9 / self.samplerate))
+        if low >= HEADER_LOW[1]:
+            self.warn(fell, self.samplenum, "LOW for {:.1f} bits".format(low))
+            raise Cut("No header")
+        self.edge, self.is_short = self.samplenum, False
+        begin = self.samplenum - 2 * self.cell
+        if not self.until(begin + 2.5 * self.cell) or self.until(begin + 3.5 * self.cell):
+            raise Cut("No header")
+        return self.field(begin, 0b10, 3)
+
+    def field(self, begin, value=0, bit=0):
+        """The field that began there; each is timed by its own."""
+        while bit < 8:
+            value |= self.until(begin + (bit + 1.5) * self.cell) << bit
+            bit += 1
         end = int(begin + FIELD_BITS * self.cell)
-        if not delimiter:
-            self.put_text(begin, end, WARNING, ["Delimiter is LOW"])
-            # The line has to be HIGH before another field can begin.
-            self.wait({0: "h"})
-        return value, begin, end
+        if not self.until(begin + (FIELD_BITS - 0.5) * self.cell):
+            raise Cut("Delimiter is LOW")
+        return value, int(begin), end
 
-    def fields(self, count, pause):
-        """So many fields; the first one may begin after this pause, the others after that between fields."""
+    def fields(self, count):
+        """So many fields after a control field."""
         found = []
         for _ in range(count):
-            pins = self.wait([{0: "f"}, {"skip": max(1, pause + int(self.cell))}])
-            if not self.matched[0]:
-                raise Cut
-            found.append(self.field())
-            pause = self.samples("field_gap_us")
+            limit = self.samplenum + self.samples("field_gap_us") + int(self.cell)
+            while True:
+                begin = self.begin(limit, "Field missing")
+                if not self.until(begin + 0.5 * self.cell):
+                    break
+            found.append(self.field(begin))
         return found
 
     def exchange(self):
         """From the start bit of a request to the end of its reply."""
-        first = self.field()
+        self.against = []
+        first = self.header(None)
         control, begin, end = first
         request = REQUESTS.get(control >> 3 & 15)
-        if control & 7 != SYNC or bin(control >> 3).count("1") & 1 or request is None:
-            self.put_text(begin, end, WARNING, ["No request: CF {:02X}".format(control), "CF"])
-            return
+        if bin(control >> 3).count("1") & 1 or request is None:
+            raise Cut("No request: CF {:02X}".format(control))
         name, sent, expected = request
         self.put_text(begin, end, REQUEST, ["ID {:X} {}".format(control >> 3 & 15, name), name])
-        asked = [first] + self.fields(len(sent) - 1, self.samples("field_gap_us"))
+        asked = [first] + self.fields(len(sent) - 1)
         self.show(sent, asked)
+        self.against = []
         try:
-            head = self.fields(1, self.samples("gap_us"))
-        except Cut:
-            self.put_text(begin, end, WARNING, ["No reply"])
+            head = self.header(self.samplenum + self.samples("gap_us") + int(self.cell))
+        except Cut as cut:
+            self.warn(begin, end, "No reply")
+            if str(cut):
+                raise
+            # The line is quiet.
             return
-        reply = head + self.fields(len(expected) - 1, self.samples("field_gap_us"))
-        (echo, begin, end) = reply[0]
+        reply = [head] + self.fields(len(expected) - 1)
+        (echo, begin, end) = head
         self.put_text(begin, end, REPLY, ["Reply {:02X}".format(echo), "CF"])
         if echo != control:
-            self.put_text(begin, end, WARNING, ["Reply to another request"])
+            self.warn(begin, end, "Reply to another request")
+            self.against.append("reply to another request")
+        if self.is_short:
+            self.against.append("short pulse")
+        self.judge(expected, [field[0] for field in reply])
         self.show(expected, reply)
+        if echo != control:
+            self.settle()
+
+    def judge(self, names, values):
+        """Reasons against the positions of a reply, by its bytes."""
+        if checksum(values[:-1]) != values[-1]:
+            self.against.append("CRC wrong")
+        if names[1] == "SF" and values[1] & REQUEST_ERRORS:
+            self.against.append("encoder saw a wrong request")
 
     def show(self, names, fields):
-        """The fields behind the control field; neighbours of one name are one number, least significant byte first."""
+        """The fields after the control field; neighbours of one name are one number, least significant byte first."""
         place = 1
         while place < len(names):
             name, count = names[place], 1
@@ -154,16 +236,16 @@ class Decoder(srd.Decoder):
 
     def one(self, name, value, begin, end, fields):
         if name in NUMBERS:
-            text = "{} {} (0x{:06X})".format(NUMBERS[name], value, value)
-            return self.put_text(begin, end, POSITIONS, [text, "{}".format(value)])
+            text = "{} (0x{:06X})".format(value, value)
+            if self.against:
+                return self.put_text(begin, end, REFUSED, ["Refused {}: {}".format(text, ", ".join(self.against)), "Refused"])
+            return self.put_text(begin, end, POSITIONS, ["{} {}".format(NUMBERS[name], text), "{}".format(value)])
         if name != "CRC":
             row = MEMORY if name in ("ADF", "EDF") else STATUS
             return self.put_text(begin, end, row, ["{} {:02X}".format(name, value)])
-        computed = 0
-        for field in fields[:-1]:
-            computed ^= field[0]
+        computed = checksum(field[0] for field in fields[:-1])
         good = computed == value
         text = "CRC {:02X}".format(value) + ("" if good else ", should be {:02X}".format(computed))
         self.put_text(begin, end, CRC, [text])
         if not good:
-            self.put_text(begin, end, WARNING, ["CRC wrong"])
+            self.warn(begin, end, "CRC wrong")
