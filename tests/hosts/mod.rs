@@ -11,6 +11,7 @@ pub mod desk;
 mod disturbed;
 mod few_cycles;
 mod injected;
+mod logged_replies;
 mod logs;
 mod ports;
 mod recordings;

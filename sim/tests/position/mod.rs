@@ -8,6 +8,7 @@ mod doubt;
 mod faults;
 mod frame_timing;
 mod interrupted;
+mod logged;
 mod pulses;
 mod random;
 mod result_fields;

@@ -54,11 +54,41 @@ fn logged_frames_of_a_real_encoder_arrive() {
     }
 }
 
+/// The same encoder, asked for its single-turn position only.
+#[test]
+fn logged_single_turn_replies_of_a_real_encoder_arrive() {
+    let logged = vectors();
+    let replies = logged.iter().filter(|(bytes, _)| bytes[0] == 0x02);
+    let mut positions = vec![];
+    for (bytes, sum) in replies {
+        assert_eq!(crc(bytes), *sum);
+        for mhz in [20, 60] {
+            let config = EncoderConfig {
+                single_turn: u32::from_le_bytes([bytes[2], bytes[3], bytes[4], 0]),
+                ..EncoderConfig::default()
+            };
+            let mut rig = Rig::new(mhz, config);
+            let map = rig.exchange(0);
+            let sent = [bytes.clone(), vec![*sum]].concat();
+            assert_eq!(rig.encoder.replies(), [sent]);
+            assert_eq!(rig.encoder.violations(), []);
+            assert!(map.fresh && map.single_valid && !map.multi_valid);
+            assert_eq!((map.status, map.crc), (bytes[1], *sum));
+            assert_eq!(map.cause, cause::MULTI_TURN_ALARM);
+            positions.push(map.single_turn);
+        }
+    }
+    let published = [
+        1_883_572, 7_907_664, 7_267_713, 6_039_153, 3_755_428, 1_522_390, 229_187,
+    ];
+    assert_eq!(positions, published.map(|p| [p; 2]).concat());
+}
+
 #[test]
 fn published_eeprom_requests_are_what_the_receiver_sends() {
     let logged = vectors();
     let requests: Vec<Vec<u8>> = (logged.iter())
-        .filter(|(bytes, _)| bytes[0] != 0x1A)
+        .filter(|(bytes, _)| [0x32, 0xEA].contains(&bytes[0]))
         .map(|(bytes, sum)| [bytes.clone(), vec![*sum]].concat())
         .collect();
     assert_eq!(requests.len(), 3);
