@@ -1,4 +1,4 @@
-//! Configurations and what is made of them, the pages, the packages, and the rules of the house.
+//! Configurations and what is made of them, the pages, the packages, the decoders for sigrok, and the rules of the house.
 
 mod boards;
 mod bus_card;
@@ -16,6 +16,7 @@ mod packages;
 mod pages;
 #[allow(dead_code)] // other topics take the rest
 mod program;
+mod sigrok;
 #[allow(dead_code, unused_imports)]
 mod tools;
 

@@ -12,7 +12,6 @@ mod integrators;
 mod program;
 mod python;
 mod shmoo;
-mod sigrok;
 mod sim;
 #[allow(dead_code, unused_imports)]
 mod tools;
