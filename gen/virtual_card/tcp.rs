@@ -254,7 +254,9 @@ impl Tcp {
                 Kind::Control => self.controls.push(stream),
                 Kind::Speaker if !keeps_out => {
                     let mute = self.host.replace(Host::new(stream));
-                    mute.map(|host| refuse(host.stream, None));
+                    if let Some(mute) = mute {
+                        refuse(mute.stream, None);
+                    }
                     // It is known to have something to say.
                     self.host.iter_mut().for_each(|host| host.has_spoken = true);
                 }
