@@ -1,6 +1,6 @@
 // driver_only: The driver is on only while a request is being sent.
 // refused_unless_quiet: A request begins only for a trigger, if it is known, and the line is HIGH and has been quiet since a reply that did not come whole.
-// quiet_after_reset: After a reset no request begins until the line has been at rest, and then for the longest pause before a reply once more.
+// quiet_after_reset: After a reset no request begins for 63 us, the longest pause before a reply, and then only when the line is at rest.
 // one_verdict: A trigger that meets no exchange has exactly one verdict, and there is none without.
 // request_as_asked: What goes out is a LOW start bit, sync code, ID and parity of the request, and a HIGH delimiter; behind the request the line is HIGH.
 // header_as_asked: A reply is good only if its first eight bits are the sync code, the ID of the request and the right parity.
@@ -22,14 +22,13 @@ always @(posedge clock) begin
     if ((phase == PHASE_REST) | ((phase == PHASE_WAIT) & order_is_control)) f_sum <= 8'd0;
 end
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-    if ($past(unsettled) & !unsettled) quiet_after_reset: assert ($past(!after_reset & (((phase == PHASE_REST) & expired) | ((phase == PHASE_JUDGE) & is_whole))));
+    if ($past(unsettled) & !unsettled) quiet_after_reset: assert ($past(((phase == PHASE_REST) & expired) | ((phase == PHASE_JUDGE) & is_whole)));
     if (driver & !$past(driver)) refused_unless_quiet: assert ($past(trigger & level & order_is_known & !unsettled));
 end
 always @(posedge clock) if (f_past_valid) begin
-    if ($past(reset)) quiet_after_reset_begins: assert (unsettled & after_reset);
-    if (!$past(reset) & $past(after_reset) & !after_reset) quiet_after_reset_waits: assert ($past(expired) & (!$past(level) | (timer == {1'b0, $past(reply_gap_us)})));
+    if ($past(reset)) quiet_after_reset_begins: assert (unsettled & (timer == 7'd63) & (phase == PHASE_REST));
+    if (!$past(reset) & $past((phase == PHASE_REST) & unsettled) & (phase == PHASE_REST)) quiet_after_reset_waits: assert ((timer == $past(timer)) | ($past(tick_us) & (timer == $past(timer) - 7'd1)) | $past(!level & (timer[6] | !(|timer[5:4]))));
 end
-always @* quiet_after_reset_same: assert (!after_reset | (unsettled & !owed & ((phase == PHASE_REST) | ((phase == PHASE_JUDGE) & refused))));
 // as long as the ID stays, which it does while an exchange is under way
 reg [3:0] f_id;
 reg f_id_stays; initial f_id_stays = 1'b0;

@@ -94,7 +94,7 @@ pub const MUTATIONS: &[(Mutation, &str)] = &[
     (mutation("a start bit that is HIGH", "exchange", "if (is_start) begin\n                        line_next = 1'b0;", "if (is_start) begin\n                        line_next = 1'b1;"), "request_as_asked"),
     (mutation("parity of the request left out", "request_bits", "{parity, request_id, 3'd2}", "{1'b0, request_id, 3'd2} | {1'b0, parity, 6'd0}"), "request_as_asked"),
     (mutation("a request at once after a reset", "exchange", "unsettled <= 1'b1;", "unsettled <= 1'b0;"), "quiet_after_reset"),
-    (mutation("no wait for a reply after a reset", "exchange", "timer_next = {1'b0, reply_gap_us};\n                    end else begin", "end else begin"), "quiet_after_reset"),
+    (mutation("no wait for a reply after a reset", "exchange", "timer <= 7'd63;", "timer <= 7'd0;"), "quiet_after_reset"),
     (mutation("the echo not looked at", "exchange", " & (echo == request_id))", ")"), "header_as_asked"),
     (mutation("parity of the header not looked at", "exchange", "bad_echo, bad_parity, is_headless", "bad_echo, 1'b0, is_headless"), "header_as_asked"),
     (mutation("sync code not looked at", "exchange", "if (in_sync) begin", "if (1'b0) begin"), "header_as_asked"),

@@ -13,7 +13,7 @@
 //! bit and a half are passed over until the reply gap has ended. Later fields are timed from their start bits.
 //!
 //! After a reply that did not come whole the next request waits until the line has been HIGH for longer than any field lasts. After a reset, which
-//! may have come in the middle of an exchange, it waits for the longest pause before a reply as well.
+//! may have come in the middle of an exchange, it waits for the longest pause before a reply that there may be, 63 us, as well.
 //! Two states that do not know of each other must agree that a request is under way before the driver is on, and one that lasts too long is
 //! cut. From the header on a reply is refused if its level changes twice within half a bit.
 
@@ -43,6 +43,9 @@ pub enum Phase {
     /// The result is published.
     Judge,
 }
+
+/// Longest pause before a reply that can be set, in microseconds.
+const REPLY_GAP_MAX_US: u64 = 63;
 
 /// Order, timing and checks of an exchange.
 #[derive(LogicBlock, Block)]
@@ -108,6 +111,7 @@ pub struct Exchange {
     bits: RequestBits,
     phase: Reg<Phase>,
     index: Reg<Bits<4>>,
+    #[start(REPLY_GAP_MAX_US.into())]
     timer: Reg<Bits<7>>,
     previous: Reg<Bit>,
     #[start(true)]
@@ -120,9 +124,6 @@ pub struct Exchange {
     // The line may still carry a reply: a request is refused.
     #[start(true)]
     unsettled: Reg<Bit>,
-    // Since the reset the line has not been HIGH for so long that a reply may begin; then it must be HIGH for the longest pause before one.
-    #[start(true)]
-    after_reset: Reg<Bit>,
     check: Reg<Bits<8>>,
     echo: Reg<Bits<4>>,
     refused: Reg<Bit>,

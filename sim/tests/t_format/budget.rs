@@ -183,7 +183,8 @@ impl Many {
             conflict: vec![0; LANES],
             flips: vec![],
         };
-        many.us(40);
+        // After power-up no request goes out.
+        many.us(70);
         many.begin(3);
         many.us(EXCHANGE_US);
         many

@@ -79,7 +79,7 @@ impl Many {
             cycle: 0,
         };
         // The line is at rest after power-up.
-        many.run(30 * conditions.system_mhz, &[]);
+        many.run(70 * conditions.system_mhz, &[]);
         many
     }
 

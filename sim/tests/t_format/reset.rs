@@ -8,7 +8,7 @@ use endat_sim::US;
 /// Longest pause before a reply that the receiver is set to.
 const REPLY_GAP_US: u64 = 20;
 /// The line is at rest after power-up.
-const READY_US: u64 = 60;
+const READY_US: u64 = 75;
 /// Request 3, with its pause and its reply.
 const EXCHANGE_US: u64 = 48 + REPLY_GAP_US;
 
@@ -42,7 +42,7 @@ fn requests_wait_after_a_reset(moments: u64) {
         rig.pins.reset = false;
         rig.set_gap(REPLY_GAP_US);
         // Asks again and again, as a controller that waits for its position.
-        for _ in 0..6 {
+        for _ in 0..16 {
             rig.wait_us(rng.in_range(0, 10));
             rig.write(0, 3);
             let map = rig.finish();
@@ -55,7 +55,7 @@ fn requests_wait_after_a_reset(moments: u64) {
         rig.wait_us(READY_US);
         assert!(rig.exchange(3).fresh, "{moment}");
     }
-    assert!(refused > moments, "{refused}");
+    assert!(refused > 2 * moments, "{refused}");
     let count = collisions.len();
     assert!(count == 0, "{count} of {moments}: {collisions:?}");
 }

@@ -10,8 +10,8 @@ use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
 use std::sync::OnceLock;
 
-/// The line is at rest after power-up, with the pauses that the receiver starts with.
-const READY_US: u64 = 45;
+/// After power-up no request goes out for the longest pause before a reply.
+const READY_US: u64 = 70;
 
 /// The inputs, as [`Inputs::row`] lists them.
 pub const INPUTS: [&str; 9] = [

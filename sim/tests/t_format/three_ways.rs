@@ -13,7 +13,7 @@ fn recorded(ids: &[u8]) -> Stimulus {
     let mut rig = Rig::new(20, EncoderConfig::default());
     rig.record();
     // From power-up on: the line has to be at rest.
-    rig.wait_us(45);
+    rig.wait_us(70);
     for &id in ids {
         rig.encoder.config.single_turn = rng.next_u64() as u32 >> 8;
         rig.encoder.config.multi_turn = rng.next_u64() as u32 >> 8;
@@ -36,7 +36,7 @@ fn recorded(ids: &[u8]) -> Stimulus {
     rig.pins.reset = false;
     // Refused, then taken: the line has to be at rest.
     rig.exchange(2);
-    rig.wait_us(40);
+    rig.wait_us(70);
     rig.exchange(2);
     rig.recorded()
 }

@@ -102,7 +102,7 @@ impl<'a> Run<'a> {
             cycle: 0,
         };
         // The line is at rest after power-up.
-        run.cycles(30 * SYSTEM_MHZ);
+        run.cycles(70 * SYSTEM_MHZ);
         run
     }
 

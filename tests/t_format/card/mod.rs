@@ -94,7 +94,7 @@ impl Rig {
         link.set_motion(std::sync::Arc::new(shaft));
         master.bench.add_t_format(&PinNames::card(t_format), link);
         // After power-up no request goes out before the line has been at rest.
-        master.bench.run_cycles(80 * CYCLES);
+        master.bench.run_cycles(90 * CYCLES);
         Self {
             master,
             endat,

@@ -43,7 +43,7 @@ fn recorded(system_mhz: u64, rounds: usize) -> Stimulus {
         bench.set(name, value);
     }
     bench.power_up();
-    bench.run_for(45 * US);
+    bench.run_for(75 * US);
     for round in 0..rounds {
         if bench.get("busy") == 0 {
             bench.set("request_id", [3, 0, 1, 2, 4, 3, 13][round % 7]);

@@ -151,14 +151,12 @@ impl Logic for Exchange {
     fn rest(&mut self) {
         self.line.d.next = true;
         if self.expired.val() {
-            self.after_reset.d.next = false;
-            if self.after_reset.q.val() {
-                self.timer.d.next = bit_cast::<7, 6>(self.reply_gap_us.val());
-            } else {
-                self.unsettled.d.next = false;
-            }
+            self.unsettled.d.next = false;
         }
-        if !self.level.val() {
+        // The wait after a reset is longer.
+        if !self.level.val()
+            & (self.timer.q.val().get_bit(6) | !self.timer.q.val().get_bits::<2>(4).any())
+        {
             self.timer.d.next = self.rest_us.val();
         }
         self.order.first.next = true;

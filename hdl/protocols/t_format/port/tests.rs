@@ -34,7 +34,7 @@ impl Rig {
             us: US,
         };
         // Longer than any pause and any field: the line is idle.
-        rig.us(30);
+        rig.us(70);
         rig
     }
 
