@@ -270,7 +270,7 @@ impl<'a> Core<'a> {
     }
 }
 
-/// The files of a core.
+/// The files of a core. `design` has the names of its text: [`crate::sources::named`].
 pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenError> {
     let top = design.top();
     let ports: Vec<Port> = top

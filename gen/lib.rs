@@ -76,8 +76,9 @@ pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, G
     };
     let has_bench = bench.is_some() || language == Language::Vhdl;
     let core = integration::Core::card(project, &sources, has_bench, language)?;
-    artifacts.extend(integration::artifacts(&core, &design)?);
-    artifacts.extend(vhdl::component(&core, &design)?);
+    let named = sources::named(&design, language);
+    artifacts.extend(integration::artifacts(&core, &named)?);
+    artifacts.extend(vhdl::component(&core, &named)?);
     artifacts.extend(constraints::artifacts(project, language)?);
     artifacts.extend(bench);
     if language == Language::Vhdl {

@@ -5,6 +5,7 @@ mod fusesoc;
 mod ipxact;
 mod litex;
 mod names;
+mod ports;
 mod zynq;
 
 use crate::tools::{self, require, require_all, require_python, run};

@@ -5,6 +5,7 @@ use super::names::{problem_of_net, verilog_name};
 use super::plan::{Dependencies, PlanError};
 use super::scope::{child_port, Symbol};
 use super::tree::BlockNode;
+use super::words::{emitted_name, keyword_in_properties};
 use super::ElaborateError;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -260,13 +261,20 @@ impl Draft<'_> {
             if let Some(problem) = problem_of_net(name) {
                 return Err(self.block.error(name, problem, "rename the field"));
             }
-            if let Some(other) = seen.insert(name.to_lowercase(), name) {
+            if let Some(other) = seen.insert(emitted_name(name).to_lowercase(), name) {
                 return Err(self.block.error(
                     name,
                     format!("and {other} would have the same Verilog name or differ only by case"),
                     "rename one of the fields",
                 ));
             }
+        }
+        if let Some(word) = keyword_in_properties(&module.properties) {
+            return Err(self.block.error(
+                "properties",
+                format!("{word} is a word of SystemVerilog"),
+                "give it another name",
+            ));
         }
         Ok(())
     }

@@ -25,12 +25,14 @@ mod scope;
 mod tree;
 mod trim;
 mod uses;
+mod words;
 
 pub use design::*;
 pub use execute::{binary, evaluate, execute};
 pub use finish::block_name;
 pub(crate) use pieces::{row, Piece};
 use rust_hdl::prelude::Block;
+pub use words::emitted_name;
 
 /// Why a block cannot be elaborated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

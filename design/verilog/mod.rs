@@ -9,14 +9,14 @@ mod names;
 mod text;
 
 pub use crate::printing::Header;
-pub use names::emitted_name;
+pub use names::{emitted_name, named};
 
 use crate::elaborate::{Design, Module};
 use text::MARK;
 
 /// The design that the text is of: with the names of the text, and without what its configuration never uses.
 pub fn as_printed(design: &Design) -> Design {
-    names::with_emitted_names(design).trimmed()
+    named(design).trimmed()
 }
 
 /// Prints a design as one file, the top module first.

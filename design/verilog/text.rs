@@ -38,7 +38,7 @@ pub(super) fn properties(text: &str) -> String {
     let line = |line: &str| match line {
         "" => "\n".to_string(),
         line if line.starts_with('`') => format!("{line}\n"),
-        line => format!("{INDENT}{line}\n"),
+        line => format!("{INDENT}{}\n", labelled(line)),
     };
     let lines: String = text.lines().map(line).collect();
     // What does not speak of any state holds from the start values.
@@ -46,5 +46,46 @@ pub(super) fn properties(text: &str) -> String {
         true => lines,
         false => format!("`ifndef {ANY_STATE}\n{lines}`endif\n"),
     };
-    format!("\n`ifdef FORMAL\n{lines}`endif\n")
+    format!("\n`ifdef FORMAL\n{LABELS}{lines}`undef {LABEL}\n`endif\n")
+}
+
+/// The macro that labels an assertion.
+const LABEL: &str = "FORMAL_LABEL";
+
+/// Its definition: Icarus Verilog 11 takes assertions, but no labels.
+const LABELS: &str = "`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
+";
+
+/// A line with its label in the macro.
+fn labelled(line: &str) -> String {
+    let Some(end) = line.find(": assert (") else {
+        return line.to_string();
+    };
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let begin = line[..end].rfind(|c: char| !is_letter(c));
+    let begin = begin.map_or(0, |at| at + 1);
+    let [before, name, after] = [&line[..begin], &line[begin..end], &line[end + 1..]];
+    format!("{before}`{LABEL}({name}){after}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_of_assertions_are_in_the_macro() {
+        assert_eq!(
+            labelled("always @* if (x) one: assert (a ? b : c);"),
+            "always @* if (x) `FORMAL_LABEL(one) assert (a ? b : c);"
+        );
+        assert_eq!(
+            labelled("    two: assert (1);"),
+            "    `FORMAL_LABEL(two) assert (1);"
+        );
+        assert_eq!(labelled("wire a = b ? c : d;"), "wire a = b ? c : d;");
+    }
 }

@@ -13,7 +13,7 @@ mod package;
 mod text;
 
 pub use crate::printing::Header;
-pub use names::emitted_name;
+pub use names::{emitted_name, named};
 pub use package::package_name;
 
 use crate::elaborate::{Design, Module, ModuleId};
@@ -21,7 +21,7 @@ use text::MARK;
 
 /// The design that the text is of: with the names of the text, and without what its configuration never uses.
 pub fn as_printed(design: &Design) -> Design {
-    names::with_emitted_names(design).trimmed()
+    named(design).trimmed()
 }
 
 /// Prints a design as one file, in the order in which compilers want it: the package, then each entity below those that it instantiates.

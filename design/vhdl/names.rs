@@ -29,8 +29,8 @@ pub fn emitted_name(name: &str) -> String {
     }
 }
 
-/// The design with its emitted names: in VHDL all of a module's share one space, without regard to case.
-pub(super) fn with_emitted_names(design: &Design) -> Design {
+/// The design with the names of the text, and otherwise as it is: in VHDL all of a module's share one space, without regard to case.
+pub fn named(design: &Design) -> Design {
     let mut design = design.clone();
     let mut modules = Names::default();
     for module in &mut design.modules {

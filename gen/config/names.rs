@@ -1,12 +1,15 @@
 //! Names that a generated file may carry: identifiers that no tool of the flow takes for something else.
 
+use rtl_design::{verilog, vhdl};
+
 /// Longest name; file systems and XST both stand more.
 pub const NAME_MAX: usize = 40;
 
 /// What a name is like, reserved words aside, as a regular expression.
 pub const NAME_PATTERN: &str = "^[A-Za-z](_?[A-Za-z0-9])*$";
 
-/// Words of Verilog-2005, VHDL-2008 and C that a module, file or macro must not be called; all in lower case.
+/// Words of Verilog-2005 and C that a module, file or macro must not be called; all in lower case. The printers know those of
+/// SystemVerilog and VHDL.
 const RESERVED: &[&str] = &[
     // Verilog-2005
     "always and assign automatic begin buf bufif0 bufif1 case casex casez cell cmos config deassign default \
@@ -18,19 +21,9 @@ const RESERVED: &[&str] = &[
      rnmos rpmos rtran rtranif0 rtranif1 scalared showcancelled signed small specify specparam strong0 strong1 \
      supply0 supply1 table task time tran tranif0 tranif1 tri tri0 tri1 triand trior trireg unsigned use uwire \
      vectored wait wand weak0 weak1 while wire wor xnor xor",
-    // SystemVerilog words that turn up as names
-    "bit byte checker class clocking do enum export final import int interface logic longint modport package \
-     priority program property rand ref return sequence shortint static string struct super this type typedef \
-     union unique virtual void",
-    // VHDL-2008
-    "abs access after alias all architecture array assert attribute block body buffer bus component configuration \
-     constant context disconnect downto elsif entity exit file generic group guarded impure in inertial is label \
-     linkage literal loop map mod new next null of on open others out port postponed procedure process protected \
-     pure range record register reject rem report rol ror select severity shared signal sla sll sra srl subtype \
-     then to transport unaffected units until variable when with work",
     // C
-    "auto break char const continue double extern float goto inline long restrict short sizeof switch volatile \
-     main",
+    "auto break char const continue double enum extern float goto inline int long restrict return short sizeof static struct \
+     switch typedef union void volatile main",
     // file names that Windows keeps for devices
     "con prn aux nul com1 com2 com3 com4 lpt1 lpt2 lpt3",
 ];
@@ -70,7 +63,12 @@ pub fn check_name(name: &str) -> Result<(), String> {
             "has a double or a trailing underscore, which VHDL does not allow; remove it".into(),
         );
     }
-    if reserved().any(|word| word.eq_ignore_ascii_case(name)) {
+    // The printer would rename such a module, and the files around it would name another one.
+    let lower = name.to_lowercase();
+    let is_renamed = [verilog::emitted_name(&lower), vhdl::emitted_name(&lower)]
+        .iter()
+        .any(|emitted| *emitted != lower);
+    if is_renamed || reserved().any(|word| word.eq_ignore_ascii_case(name)) {
         return Err("is a reserved word of Verilog, VHDL, C or the file system; add a suffix, for example `_card`".into());
     }
     Ok(())
@@ -97,6 +95,15 @@ mod tests {
             "SIZEOF",
             "nul",
             "",
+            "assert",
+            "let",
+            "sequence",
+            "Sequence",
+            "ieee",
+            "true",
+            "False",
+            "slice",
+            "std_logic",
             "1a",
             "a b",
             "../x",

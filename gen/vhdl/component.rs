@@ -20,16 +20,15 @@ struct Port {
     meaning: String,
 }
 
-/// What a port of the core is called in VHDL. A name of the Verilog that is a word of VHDL stands between backslashes.
+/// The name of a port in VHDL. A name of the Verilog text that is a word of VHDL is written between backslashes.
 fn name_of(net: &Net, language: Language) -> String {
-    let name = emitted_name(&net.name);
-    match language == Language::Vhdl || name == net.name {
-        true => name,
+    match language == Language::Vhdl || emitted_name(&net.name) == net.name {
+        true => net.name.clone(),
         false => format!("\\{}\\", net.name),
     }
 }
 
-/// Both files.
+/// Both files. `design` has the names of its text: [`crate::sources::named`].
 pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenError> {
     let top = design.top();
     let names = top

@@ -3,10 +3,10 @@
 reg [15:0] f_crc; initial f_crc = 16'hffff;
 reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
 wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;
-function [15:0] f_crc_of(input [15:0] before, input [7:0] value, input [3:0] bits);
+function [15:0] f_crc_of(input [15:0] so_far, input [7:0] value, input [3:0] bits);
     integer i;
     begin
-        f_crc_of = before;
+        f_crc_of = so_far;
         for (i = 0; i < 8; i = i + 1)
             if (i < bits) f_crc_of = {f_crc_of[14:0], 1'b0} ^ ((f_crc_of[15] ^ value[7 - i]) ? 16'h1021 : 16'h0000);
     end

@@ -5,9 +5,7 @@ use crate::tools::{folder, require_python, run};
 use endat_gen::config::{load_preset, parse, preset};
 
 /// Words of Python, YAML, SystemRDL, Tcl and LiteX that are no reserved words of Verilog, VHDL or C.
-const NAMES: [&str; 14] = [
-    "true",
-    "False",
+const NAMES: [&str; 12] = [
     "none",
     "yes",
     "off",

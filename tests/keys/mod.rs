@@ -24,7 +24,7 @@ const BASES: [&str; 7] = [
      [outputs]\nparts = []\n[safety]\nparts = [\"second_interface\", \"error_test\"]\nerror_test_ms = 50\n\
      [stream]\nfifo_bytes = 1024\nstart = \"push\"\nadditional_data = true\n[device]\ninitial_values = true\n[board]\nname = \"papilio_pro\"\n\
      [pins]\ntrigger_i = \"A0\"\n",
-    "name = \"inside\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
+    "name = \"base\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
      command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\nbase_address = 0x2000\n[outputs]\n\
      parts = [\"position\", \"interrupt\"]\n",
     "name = \"outside\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\

@@ -6,7 +6,7 @@ use super::on_both_cores;
 use crate::tools::{self, run};
 use crate::verilog::write;
 use endat_gen::config::{Configuration, PRESETS, RECEIVER_PRESETS};
-use endat_gen::readers::{is_bench, Reader, LINTERS};
+use endat_gen::readers::{is_bench, is_core, Reader, LINTERS};
 use std::path::Path;
 
 const PYTHON: &str = "cocotb at every emission";
@@ -111,6 +111,37 @@ fn lints(emission: &Emission, folder: &Path) -> Vec<String> {
         Some(format!("{reader}: {}", said.unwrap()?))
     };
     LINTERS.into_iter().filter_map(lint).collect()
+}
+
+/// What iverilog says against the files of a card with the properties in them.
+fn formal(emission: &Emission, folder: &Path) -> Vec<String> {
+    let core = emission.files.iter().filter(|f| is_core(f));
+    let core: Vec<&str> = core.map(|f| f.path.as_str()).collect();
+    let compiled = |defines: &[&str]| {
+        let head = ["-g2012", "-tnull", "-s", emission.top()];
+        let arguments = [&head[..], defines, &core].concat();
+        let (is_good, text) = run("iverilog", folder, &arguments);
+        (!is_good).then(|| format!("{defines:?}: {text}"))
+    };
+    let both = [&["-DFORMAL"][..], &["-DFORMAL", "-DFORMAL_ANY_STATE"]];
+    both.into_iter().filter_map(compiled).collect()
+}
+
+/// Catches a name in the properties that is a word of SystemVerilog, which a reader takes the file for because of its assertions.
+#[test]
+fn some_emissions_compile_with_their_properties() {
+    if has_tools() {
+        let texts = wanted(|name| QUICK.contains(&name));
+        check("formal", &texts, formal);
+    }
+}
+
+#[test]
+#[ignore = "slow: properties of every emission"]
+fn every_emission_compiles_with_its_properties() {
+    if has_tools() {
+        check("formal-all", &texts(), formal);
+    }
 }
 
 /// Catches an output without a start value, and a front that only masters of this project can read.

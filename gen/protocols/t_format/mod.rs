@@ -66,8 +66,9 @@ pub fn emit_in(receiver: &Receiver, language: Language) -> Result<Vec<Artifact>,
         format!("# {name}\n\n{origin}\n\n{map}"),
     ));
     let core = integration::Core::receiver(receiver, &sources, language);
-    artifacts.extend(integration::artifacts(&core, &design)?);
-    artifacts.extend(vhdl::component(&core, &design)?);
+    let named = sources::named(&design, language);
+    artifacts.extend(integration::artifacts(&core, &named)?);
+    artifacts.extend(vhdl::component(&core, &named)?);
     match language {
         Language::Verilog => artifacts.push(bench::artifact(receiver)?),
         Language::Vhdl => {
