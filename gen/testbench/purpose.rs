@@ -14,7 +14,7 @@ use endat_hdl::config::{CardConfig, ChannelConfig, ChannelSpec, PhaseSource};
 use endat_hdl::endat::line_delay::mode;
 use endat_hdl::endat::service::program::forced_errors;
 use endat_hdl::endat::timing::{
-    cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
+    cycles_at_most, cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{start, CHANNEL_CONFIG, LINE, RECOVERY, RESULT, SERVICE};
@@ -134,6 +134,9 @@ fn watched(card: &CardConfig) -> Vec<Value> {
 /// Frames that fit into each half of a run of continuous clock.
 const RUN_FRAMES: u64 = 3;
 
+/// Clock periods in which the receiver sees that a frame of a run is over.
+const RUN_EDGES: u64 = 4;
+
 /// The card with the command of the continuous clock on its EnDat channels, if it has one.
 fn running(card: &CardConfig) -> Option<CardConfig> {
     let command = ModeCommand::SendPosition;
@@ -145,10 +148,19 @@ fn running(card: &CardConfig) -> Option<CardConfig> {
     changed(card, run).filter(|_| card.service.continuous)
 }
 
+/// Frames of a run, at the most, that are on their way there and back: the encoder has begun them, and the end of the run overtakes them.
+fn frames_on_cable(channel: &ChannelConfig, delay_cycles: u64, system_hz: u64) -> u64 {
+    let lead = cycles_at_most(channel.spec.tcal_max_ns, system_hz);
+    let answer = u64::from(channel.command.answer_bits(channel.position_bits));
+    let frame = lead + answer * channel.period_cycles;
+    (delay_cycles + RUN_EDGES * channel.period_cycles) / frame
+}
+
 /// Channels of that card: where the clock is told to go on.
-fn runs(card: &CardConfig) -> Vec<Value> {
-    let channels = card.endat_channels().map(|(n, c)| {
+fn runs(card: &CardConfig, ports: &[Port]) -> Vec<Value> {
+    let channels = card.endat_channels().zip(ports).map(|((n, c), port)| {
         context! {
+            on_cable => frames_on_cable(c, port.delay_cycles, card.system_hz),
             index => n,
             address => service_address("continuous", n),
             flip => (1u64 << c.position_bits) - 1,
@@ -307,7 +319,13 @@ fn request_ns(card: &CardConfig) -> u64 {
 impl Parts {
     pub(super) fn new(card: &CardConfig, ports: &[Port]) -> Result<Self, GenError> {
         let run = running(card);
+        let runs = run
+            .iter()
+            .flat_map(|run| runs(run, ports))
+            .collect::<Vec<_>>();
+        let is_on_cable = |run: &Value| run.get_attr("on_cable").is_ok_and(|n| n != Value::from(0));
         let context = context! {
+            overtakes => runs.iter().any(is_on_cable),
             rates => rates(card),
             own_rate => writes(card),
             direct => card.outputs.position,
@@ -324,7 +342,7 @@ impl Parts {
             has_list => !configured_list(card).is_empty(),
             no_infos => NO_INFOS.map(|code| format!("{code:02X}")),
             select => ModeCommand::PositionSelectMemory.code(),
-            runs => run.iter().flat_map(runs).collect::<Vec<_>>(),
+            runs,
             run_writes => run.iter().flat_map(writes).collect::<Vec<_>>(),
             run_ns => whole(RUN_FRAMES * cycle_ns(card)),
             run_frames => 2 * RUN_FRAMES - 1,

@@ -431,6 +431,11 @@ module s6_two_channel_channel (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     wire [47:0] answer = 48'd0;
     wire [0:0] transaction_probe = 1'd0;
@@ -445,13 +450,14 @@ module s6_two_channel_channel (
     always @(posedge clock) begin
         f_past_valid <= 1'b1;
         if (f_past_valid) begin
-            if ($past(reset)) safe_after_reset: assert (endat_clk & !data_oe);
-            else driver_as_sent: assert (!data_oe | $past(sender_oe | transaction_probe));
+            if ($past(reset)) `FORMAL_LABEL(safe_after_reset) assert (endat_clk & !data_oe);
+            else `FORMAL_LABEL(driver_as_sent) assert (!data_oe | $past(sender_oe | transaction_probe));
         end
     end
-    always @* frame_is_driven: assert (!transaction_run | !transaction_is_at_rest);
-    always @* positions_only: assert (!transaction_start | frame_own | f_bare | f_rides);
+    always @* `FORMAL_LABEL(frame_is_driven) assert (!transaction_run | !transaction_is_at_rest);
+    always @* `FORMAL_LABEL(positions_only) assert (!transaction_start | frame_own | f_bare | f_rides);
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

@@ -508,6 +508,11 @@ module s6_two_channel_channel_registers (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     // held_together: All words of a result that are held change in one cycle, when they are told to follow it, and in no other one.
     // age_while_shown: Age and `stale` of what is held go on only while nothing is read.
@@ -516,14 +521,15 @@ module s6_two_channel_channel_registers (
     always @(posedge clock) begin
         f_past_valid <= 1'b1;
         if (f_past_valid & !$past(reset)) begin
-            if ($past(!load)) held_together: assert ($stable({held_0, held_1, held_2, held_3, held_4, held_5}));
-            if ($past(!show)) age_while_shown: assert ($stable({age_shown, stale_shown}));
-            if ($past(result_strobe & !new_set)) owed_once: assert (!waiting);
-            if ($past(!result_strobe & !new_set)) owed_once_kept: assert ($stable(waiting));
-            if ($past(new_set)) owed_once_taken: assert (waiting == $past(trigger & !busy));
+            if ($past(!load)) `FORMAL_LABEL(held_together) assert ($stable({held_0, held_1, held_2, held_3, held_4, held_5}));
+            if ($past(!show)) `FORMAL_LABEL(age_while_shown) assert ($stable({age_shown, stale_shown}));
+            if ($past(result_strobe & !new_set)) `FORMAL_LABEL(owed_once) assert (!waiting);
+            if ($past(!result_strobe & !new_set)) `FORMAL_LABEL(owed_once_kept) assert ($stable(waiting));
+            if ($past(new_set)) `FORMAL_LABEL(owed_once_taken) assert (waiting == $past(trigger & !busy));
         end
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

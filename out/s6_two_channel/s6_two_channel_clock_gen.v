@@ -88,6 +88,11 @@ module s6_two_channel_clock_gen (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     // no_short_low: CLOCK is LOW for half a period at least, by the shortest period that was set meanwhile.
     // no_short_high: CLOCK is HIGH for half a period at least before it falls by itself.
@@ -116,12 +121,13 @@ module s6_two_channel_clock_gen (
         end
     end
     always @* begin
-        no_short_low: assert (level | !level_next | (f_age_cycles >= {1'b0, f_shortest_now}));
-        no_short_high: assert (!fall_now | (f_age_cycles >= {1'b0, f_shortest_now}));
-        no_short_low_lemma: assert ({1'b0, f_count} <= f_age_cycles + 11'd1);
-        starts_at_once: assert (!f_past_valid | f_reset | !f_start | !level);
+        `FORMAL_LABEL(no_short_low) assert (level | !level_next | (f_age_cycles >= {1'b0, f_shortest_now}));
+        `FORMAL_LABEL(no_short_high) assert (!fall_now | (f_age_cycles >= {1'b0, f_shortest_now}));
+        `FORMAL_LABEL(no_short_low_lemma) assert ({1'b0, f_count} <= f_age_cycles + 11'd1);
+        `FORMAL_LABEL(starts_at_once) assert (!f_past_valid | f_reset | !f_start | !level);
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

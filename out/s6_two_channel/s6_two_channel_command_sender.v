@@ -73,6 +73,11 @@ module s6_two_channel_command_sender (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     localparam         HAS_ALL = 1'b0;
     wire [4:0] bits_left = 5'd0;
@@ -85,10 +90,11 @@ module s6_two_channel_command_sender (
         if (start & !reset) f_falls <= 6'd1;
     end
     always @* begin
-        driver_window: assert (!oe | ((f_falls >= 6'd2) & (f_falls <= 6'd8)) | (HAS_ALL & (in_supplement | (|bits_left))));
-        driver_window_cells: assert ((cells_left == 4'd0) | ((f_falls <= 6'd8) & ({2'd0, cells_left} == 6'd9 - f_falls)));
+        `FORMAL_LABEL(driver_window) assert (!oe | ((f_falls >= 6'd2) & (f_falls <= 6'd8)) | (HAS_ALL & (in_supplement | (|bits_left))));
+        `FORMAL_LABEL(driver_window_cells) assert ((cells_left == 4'd0) | ((f_falls <= 6'd8) & ({2'd0, cells_left} == 6'd9 - f_falls)));
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

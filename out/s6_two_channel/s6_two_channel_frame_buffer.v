@@ -277,16 +277,21 @@ module s6_two_channel_frame_buffer (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     // crc16_as_sent: The two bytes behind a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
     // whole_frames_only: What may be read ends with a frame: its end moves only when the last byte of a frame has been written.
     reg [15:0] f_crc; initial f_crc = 16'hffff;
     reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
     wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;
-    function [15:0] f_crc_of(input [15:0] before, input [7:0] value, input [3:0] bits);
+    function [15:0] f_crc_of(input [15:0] so_far, input [7:0] value, input [3:0] bits);
         integer i;
         begin
-            f_crc_of = before;
+            f_crc_of = so_far;
             for (i = 0; i < 8; i = i + 1)
                 if (i < bits) f_crc_of = {f_crc_of[14:0], 1'b0} ^ ((f_crc_of[15] ^ value[7 - i]) ? 16'h1021 : 16'h0000);
         end
@@ -302,13 +307,13 @@ module s6_two_channel_frame_buffer (
         assume ((f_cycle < 4'd5) | (f_cycle == 4'd15) | (set_byte == f_byte));
     end
     always @* begin
-        crc16_as_sent: assert (!(byte_end & in_tail & !at[2] & !at[1]) | (byte_now == (at[0] ? f_crc[15:8] : f_crc[7:0])));
-        crc16_as_sent_so_far: assert (!writing | (crc == f_crc_of(f_crc, byte_now, f_bits)));
-        crc16_as_sent_tail: assert ((cycle_at == 4'd0) | (in_tail == (at[6:3] == TAIL_BLOCK)));
-        crc16_as_sent_rest: assert (writing ? (byte_end == (cycle_at == 4'd15)) : ((cycle_at == 4'd0) & !byte_end));
-        crc16_as_sent_stays: assert (in_tail | !cycle_at[3] | (byte_now == f_byte));
-        crc16_as_sent_bytes: assert (!in_tail | at[2] | at[1] | (cycle_at < 4'd3) | (byte_now == (at[0] ? crc[15:8] : crc[7:0])));
-        crc16_as_sent_ends: assert ((cycle_at < 4'd2) | ((is_past == (in_tail & at[2])) & (is_end == (in_tail & (&at[1:0])))));
+        `FORMAL_LABEL(crc16_as_sent) assert (!(byte_end & in_tail & !at[2] & !at[1]) | (byte_now == (at[0] ? f_crc[15:8] : f_crc[7:0])));
+        `FORMAL_LABEL(crc16_as_sent_so_far) assert (!writing | (crc == f_crc_of(f_crc, byte_now, f_bits)));
+        `FORMAL_LABEL(crc16_as_sent_tail) assert ((cycle_at == 4'd0) | (in_tail == (at[6:3] == TAIL_BLOCK)));
+        `FORMAL_LABEL(crc16_as_sent_rest) assert (writing ? (byte_end == (cycle_at == 4'd15)) : ((cycle_at == 4'd0) & !byte_end));
+        `FORMAL_LABEL(crc16_as_sent_stays) assert (in_tail | !cycle_at[3] | (byte_now == f_byte));
+        `FORMAL_LABEL(crc16_as_sent_bytes) assert (!in_tail | at[2] | at[1] | (cycle_at < 4'd3) | (byte_now == (at[0] ? crc[15:8] : crc[7:0])));
+        `FORMAL_LABEL(crc16_as_sent_ends) assert ((cycle_at < 4'd2) | ((is_past == (in_tail & at[2])) & (is_end == (in_tail & (&at[1:0])))));
     end
     reg f_end; initial f_end = 1'b1;
     reg [12:0] f_start; initial f_start = 13'd0;
@@ -317,10 +322,11 @@ module s6_two_channel_frame_buffer (
         f_start <= start_at;
     end
     always @* begin
-        whole_frames_only: assert ((start_at == f_start) | f_end);
-        whole_frames_only_begin: assert (!writing | !start);
+        `FORMAL_LABEL(whole_frames_only) assert ((start_at == f_start) | f_end);
+        `FORMAL_LABEL(whole_frames_only_begin) assert (!writing | !start);
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

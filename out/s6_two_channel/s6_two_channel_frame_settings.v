@@ -152,6 +152,11 @@ module s6_two_channel_frame_settings (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     wire [12:0] recovery_min_cycles_now = 13'd0;
     wire [11:0] watchdog_us_now = 12'd0;
@@ -160,11 +165,12 @@ module s6_two_channel_frame_settings (
     always @(posedge clock) begin
         f_past_valid <= 1'b1;
         if (f_past_valid & !$past(reset) & !$past(is_at_rest)) begin
-            settings_held: assert ($stable({period_cycles_now, first_low_extra_cycles_now, command_now, position_bits_now, filter_cycles_now,
+            `FORMAL_LABEL(settings_held) assert ($stable({period_cycles_now, first_low_extra_cycles_now, command_now, position_bits_now, filter_cycles_now,
                 start_window_cycles_now, start_timeout_us_now, recovery_limit_cycles_now, recovery_min_cycles_now, watchdog_us_now, filter_half_now}));
         end
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

@@ -79,6 +79,11 @@ module s6_two_channel_half_period (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     wire [0:0] shorten = 1'd0;
     wire [0:0] lengthen = 1'd0;
@@ -103,12 +108,13 @@ module s6_two_channel_half_period (
         end
     end
     always @* begin
-        half_counted: assert (!tick_now | f_adjusted | (f_since >= {1'b0, f_least_now}));
-        half_counted_so_far: assert (f_adjusted | ({1'b0, count} <= f_since + 11'd1));
-        half_counted_hit: assert (!hit | f_adjusted | (f_since >= {1'b0, f_least}));
-        half_counted_late: assert (!hit_late | f_adjusted | (f_since >= {1'b0, f_least}));
+        `FORMAL_LABEL(half_counted) assert (!tick_now | f_adjusted | (f_since >= {1'b0, f_least_now}));
+        `FORMAL_LABEL(half_counted_so_far) assert (f_adjusted | ({1'b0, count} <= f_since + 11'd1));
+        `FORMAL_LABEL(half_counted_hit) assert (!hit | f_adjusted | (f_since >= {1'b0, f_least}));
+        `FORMAL_LABEL(half_counted_late) assert (!hit_late | f_adjusted | (f_since >= {1'b0, f_least}));
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

@@ -81,6 +81,11 @@ module s6_two_channel_input_filter (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     localparam         HAS_DOUBLE = 1'b0;
     // short_pulses_ignored: The level follows DATA only after more samples in a row than the filter ignores.
@@ -91,10 +96,11 @@ module s6_two_channel_input_filter (
         if (f_differs & !reset) f_other <= (f_other == 5'd31) ? f_other : f_other + 5'd1;
     end
     always @* begin
-        short_pulses_ignored: assert (HAS_DOUBLE | (settled == level_now) | (f_differs & (f_other >= {1'b0, filter_cycles})));
-        short_pulses_ignored_count: assert (HAS_DOUBLE | (different <= f_other));
+        `FORMAL_LABEL(short_pulses_ignored) assert (HAS_DOUBLE | (settled == level_now) | (f_differs & (f_other >= {1'b0, filter_cycles})));
+        `FORMAL_LABEL(short_pulses_ignored_count) assert (HAS_DOUBLE | (different <= f_other));
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

@@ -505,6 +505,11 @@ module s6_two_channel_receiver (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     wire [0:0] going_on = 1'd0;
     wire [0:0] has_f1 = 1'd1;
@@ -577,35 +582,36 @@ module s6_two_channel_receiver (
     end
     wire f_answer = (field == FIELD_F1) | (field == FIELD_F2) | (field == FIELD_PAYLOAD) | (field == FIELD_CRC);
     always @* begin
-        crc_as_received: assert (!(f_held & done) | (serial_ok == (f_received == ~f_crc)));
-        crc_as_received_lemma_register: assert (!(f_held & (f_open | f_whole)) | (~serial_crc == f_after(f_crc, f_received, f_of_crc[6] ? 7'd0 : f_of_crc)));
-        error_bits_as_received: assert (!(f_held & done) | ((f1 == f_f1) & (f2 == f_f2)));
-        error_bits_as_received_lemma: assert (!(f_held & (f_open | f_whole)) | (((f_count == 7'd0) | (f1_bit == f_f1)) & (f2_bit == f_f2)));
-        bits_counted: assert (!(f_held & done) | (f_whole & (f_count == f_covered + 7'd5)));
+        `FORMAL_LABEL(crc_as_received) assert (!(f_held & done) | (serial_ok == (f_received == ~f_crc)));
+        `FORMAL_LABEL(crc_as_received_lemma_register) assert (!(f_held & (f_open | f_whole)) | (~serial_crc == f_after(f_crc, f_received, f_of_crc[6] ? 7'd0 : f_of_crc)));
+        `FORMAL_LABEL(error_bits_as_received) assert (!(f_held & done) | ((f1 == f_f1) & (f2 == f_f2)));
+        `FORMAL_LABEL(error_bits_as_received_lemma) assert (!(f_held & (f_open | f_whole)) | (((f_count == 7'd0) | (f1_bit == f_f1)) & (f2_bit == f_f2)));
+        `FORMAL_LABEL(bits_counted) assert (!(f_held & done) | (f_whole & (f_count == f_covered + 7'd5)));
         if (f_held) begin
-            bits_counted_lemma_then: assert (f_simple & f_asked & !in_info & (infos_left == 2'd0));
-            bits_counted_lemma_open: assert (f_open == f_answer);
-            bits_counted_lemma_whole: assert (!f_whole | (!f_open & (field == FIELD_DONE) & (f_count == f_covered + 7'd5)));
-            bits_counted_lemma_done: assert (!(last_taken | waiting | done_now) | f_whole);
+            `FORMAL_LABEL(bits_counted_lemma_then) assert (f_simple & f_asked & !in_info & (infos_left == 2'd0));
+            `FORMAL_LABEL(bits_counted_lemma_open) assert (f_open == f_answer);
+            `FORMAL_LABEL(bits_counted_lemma_whole) assert (!f_whole | (!f_open & (field == FIELD_DONE) & (f_count == f_covered + 7'd5)));
+            `FORMAL_LABEL(bits_counted_lemma_done) assert (!(last_taken | waiting | done_now) | f_whole);
             if (f_open) begin
-                bits_counted_lemma_left: assert ({1'b0, left} == {1'b0, f_covered} + 8'd6 - {1'b0, f_count});
-                bits_counted_lemma_f1: assert ((field == FIELD_F1) == (f_count == 7'd0));
-                bits_counted_lemma_f2: assert ((field == FIELD_F2) == (has_f2 & (f_count == 7'd1)));
-                bits_counted_lemma_crc: assert ((field == FIELD_CRC) == (f_count >= f_covered));
-                bits_counted_lemma_end: assert (f_count <= f_covered + 7'd4);
+                `FORMAL_LABEL(bits_counted_lemma_left) assert ({1'b0, left} == {1'b0, f_covered} + 8'd6 - {1'b0, f_count});
+                `FORMAL_LABEL(bits_counted_lemma_f1) assert ((field == FIELD_F1) == (f_count == 7'd0));
+                `FORMAL_LABEL(bits_counted_lemma_f2) assert ((field == FIELD_F2) == (has_f2 & (f_count == 7'd1)));
+                `FORMAL_LABEL(bits_counted_lemma_crc) assert ((field == FIELD_CRC) == (f_count >= f_covered));
+                `FORMAL_LABEL(bits_counted_lemma_end) assert (f_count <= f_covered + 7'd4);
             end else if (!f_whole) begin
-                bits_counted_lemma_before: assert ((field == FIELD_SKIP) | (field == FIELD_START) | (field == FIELD_DONE));
+                `FORMAL_LABEL(bits_counted_lemma_before) assert ((field == FIELD_SKIP) | (field == FIELD_START) | (field == FIELD_DONE));
                 if (field != FIELD_DONE) begin
-                    bits_counted_lemma_clear: assert (f_count == 7'd0);
-                    crc_as_received_lemma_clear: assert ((f_crc == 5'd31) & (~serial_crc == 5'd31));
-                    error_bits_as_received_lemma_clear: assert (f2_bit & f_f2);
+                    `FORMAL_LABEL(bits_counted_lemma_clear) assert (f_count == 7'd0);
+                    `FORMAL_LABEL(crc_as_received_lemma_clear) assert ((f_crc == 5'd31) & (~serial_crc == 5'd31));
+                    `FORMAL_LABEL(error_bits_as_received_lemma_clear) assert (f2_bit & f_f2);
                 end
             end
-            if (field == FIELD_START) bits_counted_lemma_start: assert (left == f_covered + 7'd6);
-            if (field == FIELD_SKIP) bits_counted_lemma_skip: assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shift_now & !align & !take_crc & !last_payload);
+            if (field == FIELD_START) `FORMAL_LABEL(bits_counted_lemma_start) assert (left == f_covered + 7'd6);
+            if (field == FIELD_SKIP) `FORMAL_LABEL(bits_counted_lemma_skip) assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shift_now & !align & !take_crc & !last_payload);
         end
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

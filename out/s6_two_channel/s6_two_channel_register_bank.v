@@ -515,12 +515,18 @@ module s6_two_channel_register_bank (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     // read_is_one_moment: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
     reg f_reading; initial f_reading = 1'b0;
     always @(posedge clock) f_reading <= reading & !reset;
-    always @* read_is_one_moment: assert (!f_reading | (!load & !show));
+    always @* `FORMAL_LABEL(read_is_one_moment) assert (!f_reading | (!load & !show));
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

@@ -404,6 +404,11 @@ module s6_two_channel_stream (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     // one_set_per_trigger: A trigger while sets are collected has exactly one set, or is counted as lost; nothing else makes a set.
     // set_of_one_moment: Number, time and count of lost ones in the head of a set do not change while its frame is being written.
@@ -419,15 +424,16 @@ module s6_two_channel_stream (
         if (reset) f_owed <= 1'b0;
     end
     always @* begin
-        one_set_per_trigger: assert (!(take_now & lost_now) & (!(take_now | lost_now) | f_owed) & (!(f_owed & trigger) | take_now | lost_now));
-        one_set_per_trigger_open: assert (f_owed == open);
+        `FORMAL_LABEL(one_set_per_trigger) assert (!(take_now & lost_now) & (!(take_now | lost_now) | f_owed) & (!(f_owed & trigger) | take_now | lost_now));
+        `FORMAL_LABEL(one_set_per_trigger_open) assert (f_owed == open);
     end
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-        if ($past(!buffer_idle)) set_of_one_moment: assert ($stable({sequence_taken, moment_taken, lost_taken}));
-        if ($past(lost_now & !clear & !(&lost_all))) lost_counted: assert (lost_all == $past(lost_all) + 16'd1);
-        if (f_same & $past(!buffer_idle)) set_of_one_moment_bytes: assert ($stable(head_byte));
+        if ($past(!buffer_idle)) `FORMAL_LABEL(set_of_one_moment) assert ($stable({sequence_taken, moment_taken, lost_taken}));
+        if ($past(lost_now & !clear & !(&lost_all))) `FORMAL_LABEL(lost_counted) assert (lost_all == $past(lost_all) + 16'd1);
+        if (f_same & $past(!buffer_idle)) `FORMAL_LABEL(set_of_one_moment_bytes) assert ($stable(head_byte));
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

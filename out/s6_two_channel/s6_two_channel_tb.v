@@ -840,17 +840,19 @@ module s6_two_channel_tb;
 
     // CRC, line delay and recovery time; after a whole frame of every channel.
     task check_evidence;
-        reg [31:0] evidence;
+        reg [31:0] evidence, age;
         begin
             for (ch = 0; ch < CHANNELS; ch = ch + 1) if (ENDAT[ch]) begin
                 evidence = word(BLOCK_STRIDE * ch + RESULT_EVIDENCE - RESULT_STATUS);
+                age = word(BLOCK_STRIDE * ch + RESULT_AGE_RECOVERY - RESULT_STATUS);
                 check("CRC received", field(evidence, EVIDENCE_CRC_RECEIVED_LSB, EVIDENCE_CRC_RECEIVED_BITS), encoder_crc[5*ch +: 5]);
                 check("CRC computed", field(evidence, EVIDENCE_CRC_COMPUTED_LSB, EVIDENCE_CRC_COMPUTED_BITS),
                       encoder_crc[5*ch +: 5] ^ {4'd0, spoil_crc[ch]});
-                check_range("line delay", field(evidence, EVIDENCE_DELAY_CYCLES_LSB, EVIDENCE_DELAY_CYCLES_BITS),
+                // Two words share the delay.
+                check_range("line delay", field(evidence, EVIDENCE_DELAY_CYCLES_LSB, EVIDENCE_DELAY_CYCLES_BITS)
+                            + (field(age, AGE_RECOVERY_DELAY_HIGH_LSB, AGE_RECOVERY_DELAY_HIGH_BITS) << EVIDENCE_DELAY_CYCLES_BITS),
                             delay_cycles(ch), delay_cycles(ch) + 12);
-                check_range("recovery time", field(word(BLOCK_STRIDE * ch + RESULT_AGE_RECOVERY - RESULT_STATUS),
-                                                   AGE_RECOVERY_RECOVERY_CYCLES_LSB, AGE_RECOVERY_RECOVERY_CYCLES_BITS),
+                check_range("recovery time", field(age, AGE_RECOVERY_RECOVERY_CYCLES_LSB, AGE_RECOVERY_RECOVERY_CYCLES_BITS),
                             recovery_cycles(ch) - 4, recovery_cycles(ch) + 24);
             end
         end

@@ -376,7 +376,7 @@ module s6_two_channel_transaction (
                 running = 1'b1;
                 in_us = 1'b1;
                 timer_clear = (hunting ^ was_hunting) | finished;
-                // A receiver that has lost its place.
+                // A receiver that has lost its place. The timer of the hunt still shows in the cycle after it.
                 if (endless & !hunting) begin
                     found = TAIL_LOW;
                     give_up = 1'b1;
@@ -654,6 +654,11 @@ module s6_two_channel_transaction (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
     localparam         HAS_ALL = 1'b0;
     localparam         HAS_DIAGNOSIS = 1'b0;
     localparam         HAS_CONTINUOUS = 1'b0;
@@ -691,28 +696,28 @@ module s6_two_channel_transaction (
 `ifndef FORMAL_ANY_STATE
     // requests have frames of their own, and a clock that goes on has results without triggers
     always @* if (!HAS_ALL & !HAS_CONTINUOUS) begin
-        one_result_per_trigger: assert (!f_taken | !f_owed | publish);
-        one_result_per_trigger_asked: assert (!publish | f_owed);
-        one_result_per_trigger_lost: assert (displaced == f_lost);
-        one_result_per_trigger_at_rest: assert ((phase != PHASE_READY) | !f_owed | owed | f_tells | publish | give_up);
-        one_result_per_trigger_lemma_rest: assert (f_in_frame | !(under_way | answered));
-        one_result_per_trigger_lemma_frame: assert (!f_in_frame | owing | answered);
-        one_result_per_trigger_lemma_once: assert (!answered | !verdict_is_pending | aborts);
-        one_result_per_trigger_lemma_where: assert (!answered | aborts | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
-        one_result_per_trigger_lemma_open: assert (f_owed == (owing | f_tells | publish));
+        `FORMAL_LABEL(one_result_per_trigger) assert (!f_taken | !f_owed | publish);
+        `FORMAL_LABEL(one_result_per_trigger_asked) assert (!publish | f_owed);
+        `FORMAL_LABEL(one_result_per_trigger_lost) assert (displaced == f_lost);
+        `FORMAL_LABEL(one_result_per_trigger_at_rest) assert ((phase != PHASE_READY) | !f_owed | owed | f_tells | publish | give_up);
+        `FORMAL_LABEL(one_result_per_trigger_lemma_rest) assert (f_in_frame | !(under_way | answered));
+        `FORMAL_LABEL(one_result_per_trigger_lemma_frame) assert (!f_in_frame | owing | answered);
+        `FORMAL_LABEL(one_result_per_trigger_lemma_once) assert (!answered | !verdict_is_pending | aborts);
+        `FORMAL_LABEL(one_result_per_trigger_lemma_where) assert (!answered | aborts | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
+        `FORMAL_LABEL(one_result_per_trigger_lemma_open) assert (f_owed == (owing | f_tells | publish));
     end
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-        starts_at_rest: assert (!start_now | (($past(phase) == PHASE_READY) & !$past(level)));
+        `FORMAL_LABEL(starts_at_rest) assert (!start_now | (($past(phase) == PHASE_READY) & !$past(level)));
     end
     always @* begin
-        low_for_tr: assert ((phase != PHASE_READY) | (f_low_cycles >= READY_LOW_CYCLES));
-        low_for_tr_lemma_timer: assert ((phase != PHASE_NOT_READY) | (timer <= f_low_cycles));
-        low_for_tr_lemma_limit: assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES));
-        low_for_tr_lemma_hit: assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
-        abort_pause: assert (!f_quiet | aborts | (phase_next != PHASE_NOT_READY) | (f_quiet_us >= ABORT_US - 16'd3));
-        abort_pause_lemma_timer: assert (!f_quiet | ({1'b0, timer} + {16'd0, timer_step} <= {1'b0, f_quiet_us} + 17'd3));
-        abort_pause_lemma_limit: assert (!f_quiet | cleared | (timer_limit == ABORT_US));
-        abort_pause_lemma_hit: assert (!f_quiet | !timer_hit | (f_quiet_us >= ABORT_US - 16'd3));
+        `FORMAL_LABEL(low_for_tr) assert ((phase != PHASE_READY) | (f_low_cycles >= READY_LOW_CYCLES));
+        `FORMAL_LABEL(low_for_tr_lemma_timer) assert ((phase != PHASE_NOT_READY) | (timer <= f_low_cycles));
+        `FORMAL_LABEL(low_for_tr_lemma_limit) assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES));
+        `FORMAL_LABEL(low_for_tr_lemma_hit) assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
+        `FORMAL_LABEL(abort_pause) assert (!f_quiet | aborts | (phase_next != PHASE_NOT_READY) | (f_quiet_us >= ABORT_US - 16'd3));
+        `FORMAL_LABEL(abort_pause_lemma_timer) assert (!f_quiet | ({1'b0, timer} + {16'd0, timer_step} <= {1'b0, f_quiet_us} + 17'd3));
+        `FORMAL_LABEL(abort_pause_lemma_limit) assert (!f_quiet | cleared | (timer_limit == ABORT_US));
+        `FORMAL_LABEL(abort_pause_lemma_hit) assert (!f_quiet | !timer_hit | (f_quiet_us >= ABORT_US - 16'd3));
     end
 `endif
 `ifdef FORMAL_ANY_STATE
@@ -735,29 +740,30 @@ module s6_two_channel_transaction (
     wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
     wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
     always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
-        forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
-        if ($past(aborts)) forward_only_abort: assert (phase == PHASE_ABORT);
+        `FORMAL_LABEL(forward_only) assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
+        if ($past(aborts)) `FORMAL_LABEL(forward_only_abort) assert (phase == PHASE_ABORT);
         if ((phase == $past(phase)) & $past(f_timed)) begin
-            phases_are_timed: assert (timer == $past(timer) + {15'd0, $past(timer_step)});
-            phases_are_timed_to_the_end: assert (timer_hit == (($past(timer) >= $past(timer_limit)) & !$past(cleared)));
+            `FORMAL_LABEL(phases_are_timed) assert (timer == $past(timer) + {15'd0, $past(timer_step)});
+            `FORMAL_LABEL(phases_are_timed_to_the_end) assert (timer_hit == (($past(timer) >= $past(timer_limit)) & !$past(cleared)));
         end
         if (phase == $past(phase) & (f_rank(phase) != 3'd0)) begin
-            if (phase == PHASE_ABORT) phases_are_timed_abort: assert (timer_limit == ABORT_US);
-            if (phase == PHASE_RECOVERY & !is_own) phases_are_timed_recovery: assert ((timer_limit == $past({3'd0, recovery_limit_cycles})) | $past(own));
-            if (phase == PHASE_FRAME) phases_are_timed_frame: assert (timer_limit == $past({4'd0, start_timeout_us}));
+            if (phase == PHASE_ABORT) `FORMAL_LABEL(phases_are_timed_abort) assert (timer_limit == ABORT_US);
+            if (phase == PHASE_RECOVERY & !is_own) `FORMAL_LABEL(phases_are_timed_recovery) assert ((timer_limit == $past({3'd0, recovery_limit_cycles})) | $past(own));
+            if (phase == PHASE_FRAME) `FORMAL_LABEL(phases_are_timed_frame) assert (timer_limit == $past({4'd0, start_timeout_us}));
         end
         if (!$past(aborts)) begin
-            if (($past(phase) == PHASE_ABORT) & $past(timer_hit) & !$past(probing)) phases_end_abort: assert (phase == PHASE_NOT_READY);
-            if (($past(phase) == PHASE_FIRST_LOW) & $past(timer_hit)) phases_end: assert (phase == PHASE_FRAME);
-            if (($past(phase) == PHASE_RECOVERY) & $past(timer_hit)) phases_end_recovery: assert ((phase == PHASE_NOT_READY) | aborts);
-            if ($past(phase) == PHASE_PARK) phases_end_park: assert (aborts | (phase != PHASE_PARK));
-            if (($past(phase) == PHASE_TAIL) & $past(was_center)) phases_end_tail: assert (phase == PHASE_RECOVERY);
+            if (($past(phase) == PHASE_ABORT) & $past(timer_hit) & !$past(probing)) `FORMAL_LABEL(phases_end_abort) assert (phase == PHASE_NOT_READY);
+            if (($past(phase) == PHASE_FIRST_LOW) & $past(timer_hit)) `FORMAL_LABEL(phases_end) assert (phase == PHASE_FRAME);
+            if (($past(phase) == PHASE_RECOVERY) & $past(timer_hit)) `FORMAL_LABEL(phases_end_recovery) assert ((phase == PHASE_NOT_READY) | aborts);
+            if ($past(phase) == PHASE_PARK) `FORMAL_LABEL(phases_end_park) assert (aborts | (phase != PHASE_PARK));
+            if (($past(phase) == PHASE_TAIL) & $past(was_center)) `FORMAL_LABEL(phases_end_tail) assert (phase == PHASE_RECOVERY);
             if ((($past(phase) == PHASE_FRAME) | ($past(phase) == PHASE_TAIL)) & $past(timer[12]) & !(($past(phase) == PHASE_FRAME) & $past(hunting)))
-                phases_end_watchdog: assert (aborts | (phase != $past(phase)));
-            if (($past(phase) == PHASE_FRAME) & $past(timer_hit & hunting & was_hunting)) phases_end_hunting: assert (aborts | (phase != PHASE_FRAME));
+                `FORMAL_LABEL(phases_end_watchdog) assert (aborts | (phase != $past(phase)));
+            if (($past(phase) == PHASE_FRAME) & $past(timer_hit & hunting & was_hunting)) `FORMAL_LABEL(phases_end_hunting) assert (aborts | (phase != PHASE_FRAME));
         end
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

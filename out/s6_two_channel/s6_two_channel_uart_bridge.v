@@ -456,6 +456,11 @@ module s6_two_channel_uart_bridge (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     // write_is_whole: A word is written only when a whole command for it has come: code, length, four bytes of address, four of data, without framing error or time-out between them.
     // first_word_as_sent: The first word that a command writes is the one that was sent, and goes to the address that was sent; an address beyond the map goes nowhere.
@@ -520,27 +525,28 @@ module s6_two_channel_uart_bridge (
     wire [3:0] f_come = (f_whole | f_whole_1) ? 4'd4 : (f_bytes >= 4'd6) & (f_bytes <= 4'd9) ? f_bytes - 4'd6 : 4'd0;
     wire [31:0] f_mask = (f_come == 4'd0) ? 32'd0 : 32'hFFFFFFFF >> (6'd32 - {f_come, 3'd0});
     always @* begin
-        write_is_whole: assert (!(access & write) | f_whole_1);
-        write_is_whole_next: assert (!(access_next & writing) | f_whole);
-        write_is_whole_state: assert (
+        `FORMAL_LABEL(write_is_whole) assert (!(access & write) | f_whole_1);
+        `FORMAL_LABEL(write_is_whole_next) assert (!(access_next & writing) | f_whole);
+        `FORMAL_LABEL(write_is_whole_state) assert (
             ((state == BRIDGE_STATE_COMMAND) & (f_bytes == 4'd0)) |
             ((state == BRIDGE_STATE_LENGTH) & (f_bytes == 4'd1)) |
             ((state == BRIDGE_STATE_ADDRESS) & (f_bytes == 4'd2 + {2'd0, byte_lane})) |
             ((state == BRIDGE_STATE_WRITE) & f_is_write & (f_bytes == 4'd6 + {2'd0, byte_lane})) |
             ((state == BRIDGE_STATE_READ) & f_asked & !f_is_write & (f_bytes == 4'd10)) |
             ((state == BRIDGE_STATE_DISCARD) & (f_bytes == 4'd11)));
-        write_is_whole_kind: assert ((f_bytes == 4'd0) | (writing == f_is_write));
-        first_word_as_sent: assert (!(access & write & f_first) | ((write_data == f_word) & (word_address == f_address[10:0]) & (in_range == (f_address[31:11] == 21'd0))));
-        first_word_as_sent_so_far: assert (!f_first | (f_is_write & !write_busy & !step_address & (((f_there ^ f_word) & f_mask) == 32'd0)));
-        first_word_as_sent_to: assert (!f_first | (f_bytes < 4'd6) | ((address == f_address[10:0]) & (out_of_range == (|f_address[31:11]))));
-        first_word_as_sent_to_3: assert (!f_first | (f_bytes != 4'd3) | (out_of_range == (|f_address[7:0])));
-        first_word_as_sent_to_4: assert (!f_first | (f_bytes != 4'd4) | (out_of_range == (|f_address[15:0])));
-        first_word_as_sent_to_5: assert (!f_first | (f_bytes != 4'd5) | ((out_of_range == (|f_address[23:3])) & (address[2:0] == f_address[2:0])));
-        read_is_whole: assert (!(access & !write) | f_asked_1);
-        read_is_whole_next: assert (!(access_next & !writing) | f_asked);
-        read_is_whole_state: assert (!f_asked | (state == BRIDGE_STATE_READ));
+        `FORMAL_LABEL(write_is_whole_kind) assert ((f_bytes == 4'd0) | (writing == f_is_write));
+        `FORMAL_LABEL(first_word_as_sent) assert (!(access & write & f_first) | ((write_data == f_word) & (word_address == f_address[10:0]) & (in_range == (f_address[31:11] == 21'd0))));
+        `FORMAL_LABEL(first_word_as_sent_so_far) assert (!f_first | (f_is_write & !write_busy & !step_address & (((f_there ^ f_word) & f_mask) == 32'd0)));
+        `FORMAL_LABEL(first_word_as_sent_to) assert (!f_first | (f_bytes < 4'd6) | ((address == f_address[10:0]) & (out_of_range == (|f_address[31:11]))));
+        `FORMAL_LABEL(first_word_as_sent_to_3) assert (!f_first | (f_bytes != 4'd3) | (out_of_range == (|f_address[7:0])));
+        `FORMAL_LABEL(first_word_as_sent_to_4) assert (!f_first | (f_bytes != 4'd4) | (out_of_range == (|f_address[15:0])));
+        `FORMAL_LABEL(first_word_as_sent_to_5) assert (!f_first | (f_bytes != 4'd5) | ((out_of_range == (|f_address[23:3])) & (address[2:0] == f_address[2:0])));
+        `FORMAL_LABEL(read_is_whole) assert (!(access & !write) | f_asked_1);
+        `FORMAL_LABEL(read_is_whole_next) assert (!(access_next & !writing) | f_asked);
+        `FORMAL_LABEL(read_is_whole_state) assert (!f_asked | (state == BRIDGE_STATE_READ));
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

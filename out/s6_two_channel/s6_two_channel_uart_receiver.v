@@ -120,6 +120,11 @@ module s6_two_channel_uart_receiver (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     // byte_as_sampled: A byte is the eight samples between a LOW start bit and a HIGH stop bit, the first one lowest.
     // samples_timed: The first sample of a byte is half a bit behind its edge, less the way through the synchroniser; each other one a bit behind the one before, to the cycle.
@@ -139,16 +144,17 @@ module s6_two_channel_uart_receiver (
         end
     end
     always @* begin
-        byte_as_sampled: assert (!good | (f_samples[9] & !f_samples[0] & (data == f_samples[8:1])));
-        byte_as_sampled_whole: assert (!(good | bad) | ((shift == f_samples) & !f_samples[0]));
-        byte_as_sampled_count: assert (!active | ((f_count <= 4'd9) & (in_start_bit == (f_count == 4'd0))));
-        byte_as_sampled_start: assert (!active | in_start_bit | !f_samples[4'd10 - f_count]);
-        byte_as_sampled_so_far: assert (!active | (shift == (((f_samples >> (4'd10 - f_count)) << (4'd10 - f_count)) | (10'd512 >> f_count))));
-        byte_as_sampled_active: assert (!sample | active);
-        samples_timed: assert (!sample | ((count == 15'd0) & (f_since == ((f_count == 4'd0) ? MIDDLE_COUNT : LAST_COUNT) + 15'd1)));
-        samples_timed_so_far: assert (!active | sample | ((f_since == count) & (count <= limit)));
+        `FORMAL_LABEL(byte_as_sampled) assert (!good | (f_samples[9] & !f_samples[0] & (data == f_samples[8:1])));
+        `FORMAL_LABEL(byte_as_sampled_whole) assert (!(good | bad) | ((shift == f_samples) & !f_samples[0]));
+        `FORMAL_LABEL(byte_as_sampled_count) assert (!active | ((f_count <= 4'd9) & (in_start_bit == (f_count == 4'd0))));
+        `FORMAL_LABEL(byte_as_sampled_start) assert (!active | in_start_bit | !f_samples[4'd10 - f_count]);
+        `FORMAL_LABEL(byte_as_sampled_so_far) assert (!active | (shift == (((f_samples >> (4'd10 - f_count)) << (4'd10 - f_count)) | (10'd512 >> f_count))));
+        `FORMAL_LABEL(byte_as_sampled_active) assert (!sample | active);
+        `FORMAL_LABEL(samples_timed) assert (!sample | ((count == 15'd0) & (f_since == ((f_count == 4'd0) ? MIDDLE_COUNT : LAST_COUNT) + 15'd1)));
+        `FORMAL_LABEL(samples_timed_so_far) assert (!active | sample | ((f_since == count) & (count <= limit)));
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

@@ -70,6 +70,11 @@ module s6_two_channel_uart_transmitter (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     // byte_on_the_line: TX has a start bit, the eight bits of the byte as it was taken, lowest first, and a stop bit; otherwise it is HIGH.
     // tx_bit_timed: TX changes at the end of a bit only, and from one end to the next it is a bit, to the cycle.
@@ -94,10 +99,10 @@ module s6_two_channel_uart_transmitter (
     wire [9:0] f_frame = {1'b1, f_byte, 1'b0};
     wire [9:0] f_left = (f_bit == 4'd10) ? 10'd1 : (f_frame >> f_bit);
     always @* begin
-        byte_on_the_line: assert (shift == f_left);
-        byte_on_the_line_ends: assert (!empty | (f_bit >= 4'd9) | ((f_bit == 4'd0) & (f_since == 15'd1)));
-        byte_on_the_line_whole: assert (!take | (f_bit >= 4'd9));
-        byte_on_the_line_range: assert (f_bit <= 4'd10);
+        `FORMAL_LABEL(byte_on_the_line) assert (shift == f_left);
+        `FORMAL_LABEL(byte_on_the_line_ends) assert (!empty | (f_bit >= 4'd9) | ((f_bit == 4'd0) & (f_since == 15'd1)));
+        `FORMAL_LABEL(byte_on_the_line_whole) assert (!take | (f_bit >= 4'd9));
+        `FORMAL_LABEL(byte_on_the_line_range) assert (f_bit <= 4'd10);
     end
     reg f_tx; initial f_tx = 1'b1;
     reg f_end; initial f_end = 1'b0;
@@ -108,10 +113,11 @@ module s6_two_channel_uart_transmitter (
         f_reset <= reset;
     end
     always @* begin
-        tx_bit_timed: assert ((tx == f_tx) | f_end | f_reset);
-        tx_bit_timed_apart: assert (bit_end ? ((count == 15'd0) & (f_since == LAST_COUNT + 15'd1)) : (f_since == count));
+        `FORMAL_LABEL(tx_bit_timed) assert ((tx == f_tx) | f_end | f_reset);
+        `FORMAL_LABEL(tx_bit_timed_apart) assert (bit_end ? ((count == 15'd0) & (f_since == LAST_COUNT + 15'd1)) : (f_since == count));
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 

@@ -242,6 +242,11 @@ module s6_two_channel_verdict (
     end
 
 `ifdef FORMAL
+`ifdef __ICARUS__
+`define FORMAL_LABEL(name)
+`else
+`define FORMAL_LABEL(name) name:
+`endif
 `ifndef FORMAL_ANY_STATE
     wire [0:0] announced = 1'd0;
     // good_means: A position is good only if both CRC checks, F1 and F2 said so, its settings were whole, and an answer was taken.
@@ -256,11 +261,12 @@ module s6_two_channel_verdict (
         if (reset | gave_up_now | (prove & (f_open | taken_now))) f_open <= 1'b0;
     end
     always @* begin
-        good_means: assert (!good | f_checked);
-        one_result_each: assert (!publish | f_reason);
-        one_result_each_open: assert (f_open == pending);
+        `FORMAL_LABEL(good_means) assert (!good | f_checked);
+        `FORMAL_LABEL(one_result_each) assert (!publish | f_reason);
+        `FORMAL_LABEL(one_result_each_open) assert (f_open == pending);
     end
 `endif
+`undef FORMAL_LABEL
 `endif
 endmodule
 
