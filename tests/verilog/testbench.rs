@@ -67,6 +67,36 @@ fn bench_passes_on_other_cards() {
     );
 }
 
+/// A cable whose delay needs all 11 bits, and on which a frame of a run fits: case `bench_780_m`.
+fn long_cable() -> Vec<Artifact> {
+    let text =
+        "name = \"long_cable\"\n[clock]\nsystem_hz = 160_000_000\n[endat]\nclock_hz = 16_000_000\n\
+        [[channel]]\nposition_bits = 31\ncommand = \"000111\"\ncable_m = 780\n\
+        [trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n[host]\nbus = \"parallel\"\n\
+        [service]\nparts = [\"requests\", \"continuous\"]\n[outputs]\nparts = [\"interrupt\"]\n";
+    endat_gen::emit(&parse("long_cable.toml", text).unwrap()).unwrap()
+}
+
+#[test]
+#[ignore = "slow: bench of a card with a cable of 780 m"]
+fn bench_passes_on_a_cable_of_780_m() {
+    bench_passes("long_cable", &long_cable(), &[]);
+}
+
+/// Catches a delay of which the bench reads 10 bits, and a run that is expected to end in the moment in which the receiver ends it.
+#[test]
+fn the_bench_of_a_long_cable_reads_the_whole_delay_and_knows_what_is_on_the_cable() {
+    let files = long_cable();
+    let bench = files.iter().find(|f| f.path.ends_with("_tb.v")).unwrap();
+    for part in [
+        "field(age, AGE_RECOVERY_DELAY_HIGH_LSB, AGE_RECOVERY_DELAY_HIGH_BITS) << EVIDENCE_DELAY_CYCLES_BITS",
+        "count_run(0, 1);",
+        "0: delay_cycles = 1282;",
+    ] {
+        assert!(bench.text.contains(part), "{part}");
+    }
+}
+
 /// The bench lets every channel take every trigger, whatever the card starts with.
 #[test]
 #[ignore = "slow: bench with triggers for each channel"]
