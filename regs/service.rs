@@ -170,7 +170,7 @@ pub const SERVICE: Block = Block {
             field("crc_2", 24, 1, "", "CRC of the last additional data 2 wrong: nothing of it was taken"),
         ]),
         word("limits", at::LIMITS, ReadWrite, "What a frame must keep to.", &[
-            field("watchdog_us", 0, 12, "us", "Longest time from the first falling edge to the end of the recovery time; 0 = not watched. Commands with a parameter and continuous clock are not watched"),
+            field("watchdog_us", 0, 12, "us", "Longest time from the first falling edge to the end of the recovery time; 0 = not watched. 101010, 100011, 011100, continuous clock and the initialisation are not watched"),
             field("recovery_min_cycles", 16, 13, "cycles", "Shortest recovery time; 0 = not checked. The program writes the shortest of the configured range at start"),
         ]).of(Part::Diagnosis),
         word("continuous", at::CONTINUOUS, ReadWrite, "Continuous clock, for the command 000111.", &[

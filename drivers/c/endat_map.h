@@ -1563,7 +1563,7 @@
 /* rw: What a frame must keep to. */
 #define ENDAT_MAP_SERVICE_LIMITS_WORD(channel) (0x416u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_LIMITS_BYTE(channel) (0x1058u + 512u * (channel))
-/* watchdog_us: Longest time from the first falling edge to the end of the recovery time; 0 = not watched. Commands with a parameter and continuous clock are not watched (us) */
+/* watchdog_us: Longest time from the first falling edge to the end of the recovery time; 0 = not watched. 101010, 100011, 011100, continuous clock and the initialisation are not watched (us) */
 #define ENDAT_MAP_SERVICE_LIMITS_WATCHDOG_US_SHIFT 0u
 #define ENDAT_MAP_SERVICE_LIMITS_WATCHDOG_US_MASK 0x00000FFFu
 /* recovery_min_cycles: Shortest recovery time; 0 = not checked. The program writes the shortest of the configured range at start (cycles) */

@@ -30,6 +30,8 @@ pub struct CommandShape {
     pub answer: AnswerShapeOut,
     /// The answer is 40 bits of test values.
     pub has_test_values: Signal<Out, Bit>,
+    /// The watchdog times its frame: not 101010, 100011 and 011100, as ArtInChip's ENDAT-IF.
+    pub is_watched: Signal<Out, Bit>,
     has_all: Constant<Bit>,
     left: Signal<Local, Bits<3>>,
     right: Signal<Local, Bits<3>>,
@@ -63,11 +65,14 @@ impl Logic for CommandShape {
         self.answer.has_f2.next = self.command.val().get_bit(5);
         self.answer.has_parameter.next = false;
         self.has_test_values.next = false;
+        self.is_watched.next = true;
         self.answer.has_supplement.next = false;
         if self.has_all.val() {
             self.is_known.next = self.is_complement.val()
                 | (self.is_same.val() & self.left.val().any() & !self.left.val().all());
             self.has_test_values.next = self.is_complement.val() & self.is_two.val();
+            self.is_watched.next = !(self.is_complement.val()
+                & ((self.left.val() == 3) | (self.left.val() == 4) | (self.left.val() == 5)));
             self.answer.has_supplement.next = self.is_same.val() & !self.is_two.val();
             self.answer.has_parameter.next =
                 (self.is_complement.val() & !self.is_position.val() & !self.is_two.val())
@@ -85,6 +90,13 @@ impl Logic for CommandShape {
 mod tests {
     use super::*;
     use crate::protocol::ModeCommand;
+
+    /// Ref: ArtInChip ENDAT-IF, watchdog.
+    const UNWATCHED: [ModeCommand; 3] = [
+        ModeCommand::ReceiveReset,
+        ModeCommand::SendParameter,
+        ModeCommand::ReceiveParameter,
+    ];
 
     fn shape(code: u8, has_all: bool) -> CommandShape {
         let mut block = CommandShape::new(has_all);
@@ -106,6 +118,8 @@ mod tests {
                 assert_eq!(s.answer.has_f2.val(), c.has_f2(), "{c:?}");
                 assert_eq!(s.answer.has_parameter.val(), c.has_parameter(), "{c:?}");
                 assert_eq!(s.answer.has_supplement.val(), c.has_supplement(), "{c:?}");
+                let watched = !UNWATCHED.contains(&c);
+                assert_eq!(s.is_watched.val(), watched, "{c:?}");
                 let values = c == ModeCommand::SendTestValues;
                 assert_eq!(s.has_test_values.val(), values, "{c:?}");
             }

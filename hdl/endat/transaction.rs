@@ -68,6 +68,8 @@ pub struct Transaction {
     /// What an answer consists of.
     #[bundle]
     pub shape: AnswerShapeIn,
+    /// The watchdog times the frame under way.
+    pub is_watched: Signal<In, Bit>,
     /// Settings of the frame are not what they were at its start.
     pub settings_upset: Signal<In, Bit>,
     /// What an answer says of itself.

@@ -153,6 +153,7 @@ impl Logic for Channel {
             & (!self.needs_four.val()
                 | self.settings_in.period_cycles.val().get_bits::<9>(2).any());
         AnswerShapeOut::join(&mut self.shape.answer, &mut self.transaction.shape);
+        self.transaction.is_watched.next = self.shape.is_watched.val();
         self.transaction.next_frame.begin_own.next = self.frame_own.q.val() & self.own_wanted.val();
         self.transaction.next_frame.is_own.next = self.frame_own.q.val();
         self.transaction.next_frame.continuous.next = self.orders.continuous.val()

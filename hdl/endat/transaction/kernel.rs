@@ -379,8 +379,7 @@ impl Logic for Transaction {
     fn watch_health(&mut self) {
         connect!(self.health <= self; tick_us, level);
         self.health.start.next = self.start_now.q.val();
-        self.health.under_way.next =
-            self.watched.val() & !self.shape.has_parameter.val() & !self.going.val();
+        self.health.under_way.next = self.watched.val() & self.is_watched.val() & !self.going.val();
         self.health.watchdog_us.next = self.limits.watchdog_us.val();
         self.health.probed.next = self.probed.val();
         self.health.is_ready.next = self.phase.q.val() == Phase::Ready;
