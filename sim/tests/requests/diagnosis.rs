@@ -247,16 +247,52 @@ fn the_watchdog_ends_a_frame_wherever_it_is() {
     watchdog(1..80);
 }
 
+/// Reset, and both that read and write a parameter: as ArtInChip's ENDAT-IF.
 #[test]
-fn commands_with_a_parameter_are_not_watched() {
-    let mut encoder = encoder();
-    encoder.tac = 12 * MS..=12 * MS;
-    let mut rig = rig(encoder, LineConfig::cable(10.0));
-    rig.bench.set("watchdog_us", 100);
-    rig.good(SelectMemory, 0xA1, 0);
-    assert_eq!(rig.last_frame().end, FrameEnd::Complete);
-    rig.good_position();
-    rig.assert_clean();
+fn the_watchdog_leaves_three_commands_alone() {
+    for (command, address, data) in [
+        (SendParameter, 3, 0),
+        (ReceiveParameter, 3, 1),
+        (ReceiveReset, 0, 0),
+    ] {
+        let mut encoder = encoder();
+        encoder.tac = 5 * MS..=5 * MS;
+        let mut rig = rig(encoder, LineConfig::cable(10.0));
+        rig.good(SelectMemory, 0xB9, 0);
+        rig.bench.run_for(13 * MS);
+        rig.bench.set("watchdog_us", 30);
+        rig.good(command, address, data);
+        assert_eq!(rig.last_frame().end, FrameEnd::Complete, "{command:?}");
+        rig.assert_clean();
+    }
+}
+
+/// Between 4.1 and 8.2 ms the frame's own limit would have been met in the cycle in which the start bit comes.
+#[test]
+fn an_answer_with_a_parameter_is_taken_after_any_access_time() {
+    for ms in [5, 8, 12] {
+        let mut encoder = encoder();
+        encoder.tac = ms * MS..=ms * MS;
+        let mut rig = rig(encoder, LineConfig::cable(10.0));
+        rig.good(SelectMemory, 0xA1, 0);
+        rig.assert_clean();
+    }
+}
+
+#[test]
+fn the_watchdog_ends_every_other_command_with_a_parameter() {
+    for command in [SelectMemory, ReceiveTestCommand, ReceiveCommunication] {
+        let mut encoder = encoder();
+        encoder.tac = 5 * MS..=5 * MS;
+        let mut rig = rig(encoder, LineConfig::cable(10.0));
+        rig.bench.set("watchdog_us", 30);
+        let begin = rig.bench.now();
+        let over = rig.request(command, 0xA1, 0);
+        assert_eq!(over.cause, cause::WATCHDOG, "{command:?}");
+        assert!(rig.bench.now() - begin < MS, "{command:?}");
+        rig.bench.set("watchdog_us", 0);
+        recovers(&mut rig);
+    }
 }
 
 #[test]

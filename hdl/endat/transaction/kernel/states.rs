@@ -86,8 +86,11 @@ impl Transaction {
         self.in_us.next = true;
         self.timer_clear.next =
             (self.progress.hunting.val() ^ self.was_hunting.q.val()) | self.progress.finished.val();
-        // A receiver that has lost its place.
-        if self.endless.val() & !self.progress.hunting.val() {
+        // A receiver that has lost its place. The timer of the hunt still shows in the cycle after it.
+        if self.endless.val()
+            & !self.progress.hunting.val()
+            & !(self.was_hunting.q.val() & self.has_all.val())
+        {
             self.found.next = self.tail_low.val();
             self.give_up.next = true;
         }
