@@ -80,6 +80,8 @@ pub struct ServiceChannel {
     event_cause: Reg<Bits<5>>,
     request_written: Reg<Bit>,
     control_written: Reg<Bit>,
+    /// The host has written a word: set with either half, cleared by the program.
+    written: Reg<Bit>,
     lost_count: Reg<Bits<16>>,
     out_command: Reg<Bits<6>>,
     out_address: Reg<Bits<8>>,
@@ -134,7 +136,8 @@ impl Logic for ServiceChannel {
             | (bit_cast::<16, 1>(self.missed.q.val().into()) << 9)
             | (bit_cast::<16, 1>(self.fresh.val().into()) << 10)
             | (bit_cast::<16, 1>(self.request_runs.val().into()) << 11)
-            | (bit_cast::<16, 2>(self.record.info_came.val()) << 12);
+            | (bit_cast::<16, 2>(self.record.info_came.val()) << 12)
+            | (bit_cast::<16, 1>(self.written.q.val().into()) << 14);
         // What comes MSB first stands the other way round in the answer.
         self.turned.next = 0.into();
         for i in 0..24 {
@@ -208,6 +211,9 @@ impl Logic for ServiceChannel {
                     if self.io_out.val().get_bit(2) {
                         self.control_written.d.next = false;
                     }
+                    if self.io_out.val().get_bit(3) {
+                        self.written.d.next = false;
+                    }
                 }
                 1 => {
                     self.out_command.d.next = self.io_out.val().get_bits::<6>(0);
@@ -250,6 +256,9 @@ impl Logic for ServiceChannel {
             self.missed.d.next = self.has_event.q.val();
             self.event_request.d.next = self.end.over_request.val();
             self.event_cause.d.next = self.end.over_cause.val();
+        }
+        if self.host_write.val() {
+            self.written.d.next = true;
         }
         if self.host_write.val() & !self.host_half.val() {
             if self.host_address.val() == 0 {

@@ -32,6 +32,8 @@ pub mod input {
         pub const INFO_1_CAME: u16 = 1 << 12;
         /// The last frame brought additional data 2, with a right CRC or a wrong one.
         pub const INFO_2_CAME: u16 = 1 << 13;
+        /// The host has written a word, or half of one.
+        pub const WRITTEN: u16 = 1 << 14;
     }
     /// What there is to do.
     pub const STATUS: u8 = 0;
@@ -99,6 +101,8 @@ pub mod output {
         pub const MAILBOX: u16 = 1 << 1;
         /// The control word has been taken.
         pub const CONTROL: u16 = 1 << 2;
+        /// Words that the host has written are about to be guarded.
+        pub const WRITTEN: u16 = 1 << 3;
     }
     /// Clears bits of the status.
     pub const ACKNOWLEDGE: u8 = 0;

@@ -12,6 +12,7 @@
 
 mod error_test;
 mod events;
+mod guard;
 mod initialise;
 mod own;
 mod position_2;
@@ -27,6 +28,7 @@ use super::map::{
 use crate::config::LIST;
 use crate::endat::sequencer::{assembler::Assembler, RAM_WORDS, SHARED_CYCLES};
 use crate::endat::timing;
+use guard::{guard, guarded, settings};
 
 /// Times of a service, and what it does by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -183,6 +185,8 @@ fn clear_ram(a: &mut Assembler) {
     a.ld(0).addi(minus(1)).jnz(more).st(0);
     set(a, first, one);
     set(a, second, other);
+    // 0 at power-up. Who has come astray to here has cleared the count of starts.
+    a.inp(input::TIME_MS).st(high(word::STATE));
     a.jmp(warm);
     a.place(half).ld(second).xori(other).jnz(cold);
     a.place(warm);
@@ -205,17 +209,18 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         low(word::REQUEST_STATE),
         low(word::PROGRESS),
         high(word::PROGRESS),
-        low(word::LIMITS),
-        low(word::CONTINUOUS),
     ] {
         set(a, word, 0);
     }
-    for (word, inverse) in own::KEPT {
-        set(a, word, 0);
-        set(a, inverse, u16::MAX);
+    for (word, inverse) in guarded(times) {
+        let value = match (word, inverse) {
+            own::SET_ERROR_TEST => times.error_test_ms,
+            _ => 0,
+        };
+        set(a, word, value);
+        set(a, inverse, !value);
     }
     a.ldi(0).out(output::FOUND).out(output::PERIOD);
-    a.ld(high(word::STATE)).addi(1).st(high(word::STATE));
     let infos = times.infos.into_iter().filter(|code| *code != 0);
     let mut length = 0;
     for code in infos {
@@ -227,14 +232,17 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
     }
     set(a, low(word::REQUEST_WAIT), times.wait_ms);
     if times.error_test_ms > 0 {
-        error_test::start(a, times);
+        error_test::start(a);
     }
     a.ldi(acknowledge::EVENT | acknowledge::MAILBOX | acknowledge::CONTROL);
     a.out(output::ACKNOWLEDGE);
     a.call("modulus");
     if times.diagnosis {
         a.call("recovery_min");
+        guard(a, own::SET_RECOVERY);
     }
+    // At the end: who comes astray into the middle sets what a start sets, and the host has to know.
+    a.ld(high(word::STATE)).addi(1).st(high(word::STATE));
     if times.initialise {
         a.call("power_up");
     } else {
@@ -291,9 +299,17 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     }
     a.place(levels);
     a.inp(input::DISPLACED).st(low(word::LOST));
-    for (word, inverse) in own::KEPT {
-        a.ld(word).xori(u16::MAX).sub(inverse).jnz("start");
+    let same = a.label();
+    a.inp(input::STATUS).andi(status::WRITTEN).jz(same);
+    a.ldi(acknowledge::WRITTEN).out(output::ACKNOWLEDGE);
+    settings(times).for_each(|setting| guard(a, setting));
+    a.place(same);
+    // A word and its complement are -1 together: this comes round in the time of a frame of the continuous clock.
+    a.ldi(guarded(times).count() as u16);
+    for (word, inverse) in guarded(times) {
+        a.add(word).add(inverse);
     }
+    a.jnz("changed");
     // Nothing else is left on here.
     a.ld(own::LEVELS).andi(!level::ALARM).jnz("start");
     // Levels are written again and again: an upset of one does not last.
@@ -310,6 +326,11 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     }
     window(a);
     plug(a, times);
+    a.jmp("main");
+
+    // By the host, in this moment, or by an upset: then everything begins anew, and the host sees that it has to write its settings again.
+    a.place("changed");
+    a.inp(input::STATUS).andi(status::WRITTEN).jz("start");
     a.jmp("main");
 }
 
@@ -365,7 +386,7 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
     a.place(seen).ret();
 
     if times.diagnosis {
-        // The shortest recovery time of the range that is wanted.
+        // The shortest recovery time of the range that is wanted. Whoever calls this guards it: a jump astray into it does not.
         let long = a.label();
         let cycles =
             |ns| timing::recovery_min_cycles(ns, u64::from(times.system_khz) * 1_000) as u16;
@@ -397,11 +418,12 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
 
     // All counters and what is latched.
     a.place("clear");
-    set(a, own::INDEX, 2 * (u16::from(COUNTER_BAD_INFOS) + 1));
-    let next = a.here();
-    a.ld(own::INDEX).addi(minus(1)).st(own::INDEX).tax();
-    a.ldi(0).st_x(low(word::COUNTERS));
-    a.ld(own::INDEX).jnz(next);
+    // No loop: a jump astray into one would clear all of RAM.
+    a.ldi(0);
+    for counter in 0..=COUNTER_BAD_INFOS {
+        let word = word::COUNTERS + counter;
+        a.st(low(word)).st(high(word));
+    }
     for word in [
         low(word::COMPARISONS),
         high(word::COMPARISONS),

@@ -112,13 +112,17 @@ impl Hosts {
     }
 
     pub fn write(&mut self, word: u8, value: u32) {
-        self.rig.bench.set_all("host_address", word.into());
         for half in [1, 0] {
-            self.rig.bench.set_all("host_half", half);
-            let data = value >> (16 * half) & 0xFFFF;
-            self.rig.bench.set_all("host_data", data.into());
-            self.strobe("host_write");
+            self.write_half(word, half, (value >> (16 * half)) as u16);
         }
+    }
+
+    /// One half of a word, 1 = high.
+    pub fn write_half(&mut self, word: u8, half: u32, value: u16) {
+        self.rig.bench.set_all("host_address", word.into());
+        self.rig.bench.set_all("host_half", half.into());
+        self.rig.bench.set_all("host_data", value.into());
+        self.strobe("host_write");
     }
 
     /// Waits until a word is as wanted in all lanes.

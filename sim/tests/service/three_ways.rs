@@ -141,7 +141,7 @@ fn kernels_engines_and_verilog_agree_on_requests() {
         endat_hz: 1_666_667,
         calibration_hz: 1_000_000,
         first: 120 * US,
-        next: 70 * US,
+        next: 80 * US,
         triggers: 2,
         info: Some(0x4C),
         encoder,

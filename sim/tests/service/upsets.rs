@@ -153,3 +153,107 @@ fn a_program_that_goes_astray_begins_anew() {
 fn a_program_that_goes_astray_at_any_moment_begins_anew() {
     astray(MOMENTS);
 }
+
+/// Registers of the program's machine, and how many bits each has.
+const MACHINE: [(&str, usize); 6] = [
+    ("counter", 11),
+    ("link", 11),
+    ("accumulator", 16),
+    ("index", 8),
+    ("address", 8),
+    ("value", 16),
+];
+/// What the host has written: a watchdog that no frame meets, and no check of the recovery time.
+const LIMITS: u32 = 0x0000_0FA3;
+const CONTINUOUS: u32 = 2;
+
+/// The host's settings while each bit of these registers is upset at so many moments of the main loop's round: they stay, or `starts` says
+/// that the host has to write them again, and that restores the axis.
+fn settings(registers: &[(&str, usize)], moments: u64) {
+    let ready = ready(false);
+    let names: Vec<String> = ready.nets().map(Into::into).collect();
+    let mut upsets = vec![];
+    for (name, bits) in registers {
+        let full = format!("service_0.sequencer.{name}");
+        let net = names.iter().position(|n| *n == full).expect("a register");
+        for bit in 0..*bits {
+            for moment in 0..moments {
+                let cycle = 37 * moment + bit as u64;
+                upsets.push((net, bit, cycle, format!("{name} bit {bit}, cycle {cycle}")));
+            }
+        }
+    }
+    let mut begun = 0;
+    for upsets in upsets.chunks(LANES) {
+        let what: Vec<String> = upsets.iter().map(|u| u.3.clone()).collect();
+        let links = vec![(encoder(), lanes::line()); upsets.len()];
+        let mut hosts = Hosts {
+            rig: Rig::on(ready.clone(), &links),
+            next_trigger: 50 * US,
+        };
+        hosts.write(word::LIMITS, LIMITS);
+        hosts.write(word::CONTINUOUS, CONTINUOUS);
+        hosts.run_for(2 * PERIOD);
+        let before = hosts.read(word::STATE);
+        let last = upsets.iter().map(|u| u.2).max().unwrap_or(0);
+        for cycle in 0..=last {
+            for (lane, upset) in upsets.iter().enumerate().filter(|(_, u)| u.2 == cycle) {
+                hosts.rig.bench.engine().flip(upset.0, upset.1, lane);
+            }
+            hosts.tick();
+        }
+        hosts.run_for(Time::from(STUCK_MS + 3) * MS);
+        let words = [word::LIMITS, word::CONTINUOUS, word::FORCE].map(|w| hosts.read(w));
+        // A start under way counts at its end.
+        hosts.run_for(PERIOD);
+        let after = hosts.read(word::STATE);
+        for (lane, what) in what.iter().enumerate() {
+            let is_new = before[lane] >> 16 != after[lane] >> 16;
+            begun += usize::from(is_new);
+            let settings = [words[0][lane], words[1][lane], words[2][lane]];
+            assert!(
+                is_new || settings == [LIMITS, CONTINUOUS, 0],
+                "{what}: {settings:x?}, and `starts` stays {:x} {:x}",
+                before[lane],
+                after[lane]
+            );
+        }
+        hosts.write(word::LIMITS, LIMITS);
+        hosts.write(word::CONTINUOUS, CONTINUOUS);
+        hosts.run_for(6 * PERIOD);
+        hosts.rest();
+        hosts.assert_never_wrong(&what);
+        hosts.assert_good_positions(&what);
+    }
+    assert!(begun > 0, "none of them made the program begin anew");
+}
+
+#[test]
+fn settings_of_the_host_stay_or_starts_counts() {
+    settings(&MACHINE[..1], LANES as u64 / 11);
+}
+
+#[test]
+#[ignore = "slow: 24 moments of each bit of the program's machine"]
+fn settings_of_the_host_stay_or_starts_counts_whatever_is_upset_in_the_program_s_machine() {
+    settings(&MACHINE, MOMENTS);
+}
+
+#[test]
+fn a_setting_of_which_the_host_writes_one_half_is_not_taken_for_upset() {
+    let ready = ready(false);
+    let links = vec![(encoder(), lanes::line()); LANES];
+    let mut hosts = Hosts {
+        rig: Rig::on(ready, &links),
+        next_trigger: 50 * US,
+    };
+    hosts.run_for(PERIOD);
+    hosts.write_half(word::LIMITS, 1, 7);
+    hosts.run_for(2 * PERIOD);
+    let starts = hosts.read(word::STATE);
+    hosts.write_half(word::LIMITS, 1, 0);
+    hosts.write(word::LIMITS, LIMITS);
+    hosts.run_for(2 * PERIOD);
+    assert_eq!(hosts.read(word::STATE), starts);
+    assert_eq!(hosts.read(word::LIMITS), vec![LIMITS; LANES]);
+}

@@ -25,11 +25,10 @@ pub const fn forced_errors(second_receiver: bool) -> usize {
 }
 
 /// What a start sets.
-pub(super) fn start(a: &mut Assembler, times: &ServiceTimes) {
+pub(super) fn start(a: &mut Assembler) {
     for word in [own::TESTING, own::BEHIND, own::TEST_NEXT] {
         set(a, word, 0);
     }
-    set(a, low(word::ERROR_TEST), times.error_test_ms);
     a.inp(input::TIME_MS).st(own::TEST_FROM);
 }
 

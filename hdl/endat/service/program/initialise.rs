@@ -1,7 +1,7 @@
 //! Initialisation: a table of steps, each a request with a frame of its own at the calibration clock.
 
 use super::requests::{code, NEVER_BEGAN};
-use super::{high, keep, keep_bits, low, minus, own, set, set_bits, ServiceTimes};
+use super::{guard, high, keep, keep_bits, low, minus, own, set, set_bits, ServiceTimes};
 use crate::config::PERIOD_BITS;
 use crate::endat::sequencer::assembler::Assembler;
 use crate::endat::service::map::{
@@ -113,6 +113,10 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     keep_bits(a, own::LEVELS, level::HOLD_OFF);
     a.out(output::CONTROL);
     a.place("begin");
+    if times.diagnosis {
+        // The host's limit is one for positions; a selection may wait for the encoder's memory.
+        a.ldi(0).out(output::WATCHDOG);
+    }
     set(a, own::ROUNDS, ROUNDS);
     a.place("round");
     a.ldi(go::CANCEL).out(output::GO);
@@ -129,12 +133,10 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
         .addi(state::INITIALISING);
     a.st(low(word::STATE));
     // Nothing of another encoder may be left.
-    let (next, end) = (2 * word::NAME_PLATE, 2 * (map::PLATE_DELAY + 1));
-    a.ldi((end - next).into()).st(own::COUNT);
-    let clear = a.here();
-    a.ld(own::COUNT).addi(minus(1)).st(own::COUNT).tax();
-    a.ldi(0).st_x(next);
-    a.ld(own::COUNT).jnz(clear);
+    a.ldi(0);
+    for word in word::NAME_PLATE..=map::PLATE_DELAY {
+        a.st(low(word)).st(high(word));
+    }
     a.ldi(go::OWN | go::CALIBRATE).st(own::GO);
 
     for step in steps() {
@@ -225,6 +227,11 @@ fn exchange(a: &mut Assembler) {
     a.ld(own::STEP_RETURN).jmpa();
 }
 
+/// Begins the program anew where no initialisation is under way: an upset has led here.
+fn no_jump_astray(a: &mut Assembler) {
+    a.ld(low(word::STATE)).andi(state::INITIALISING).jz("start");
+}
+
 /// Steps that conclude something.
 fn findings(a: &mut Assembler, times: &ServiceTimes) {
     let counted = |a: &mut Assembler| {
@@ -252,7 +259,9 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::FOUND).addi(1 << 6);
     keep(a, own::FOUND);
     if times.diagnosis {
+        no_jump_astray(a);
         a.call("recovery_long");
+        guard(a, own::SET_RECOVERY);
     }
     a.ldi(timing::ENDAT21_MAX_KHZ).st(own::DIVISOR);
     a.call("slowest");
@@ -291,10 +300,12 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     counted(a);
     a.ldi(map::RECOVERY_LONG).st(own::DATA);
     if times.diagnosis {
+        no_jump_astray(a);
         a.call("recovery_min");
         a.ld(low(word::STATE)).andi(state::SLOWER).jz(range);
         a.call("recovery_long");
         a.place(range);
+        guard(a, own::SET_RECOVERY);
     }
     a.ld(low(word::STATE)).andi(state::SLOWER).jnz(long);
     a.inp(input::CONFIGURED).andi(1 << 7).jz(long);

@@ -1,5 +1,6 @@
 //! The program's words of RAM.
 
+use super::super::map::PLATE_DELAY;
 use super::word;
 
 const FIRST: u8 = 2 * word::PRIVATE;
@@ -78,6 +79,15 @@ pub const KEPT: [(u8, u8); 3] = [
     (FOUND, FIRST + 60),
     (PERIOD, FIRST + 61),
 ];
+/// Words that the host writes and that decide about frames, and the place of each one's complement.
+pub const SET_FORCE: (u8, u8) = (2 * word::FORCE, GUARDS);
+pub const SET_WATCHDOG: (u8, u8) = (2 * word::LIMITS, GUARDS + 1);
+pub const SET_RECOVERY: (u8, u8) = (2 * word::LIMITS + 1, GUARDS + 2);
+pub const SET_CONTINUOUS: (u8, u8) = (2 * word::CONTINUOUS, GUARDS + 3);
+pub const SET_ERROR_TEST: (u8, u8) = (2 * word::ERROR_TEST, GUARDS + 4);
+/// Between the name plate and the program's other words.
+const GUARDS: u8 = 2 * (PLATE_DELAY + 1);
+const _: () = assert!(SET_ERROR_TEST.1 < FIRST);
 /// Those of the forced errors, in front of the counters: how long ago the last one was, which one comes next, its cause.
 pub const TEST_FROM: u8 = 2 * word::COUNTERS - 1;
 pub const TEST_NEXT: u8 = 2 * word::COUNTERS - 2;
