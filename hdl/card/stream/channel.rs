@@ -136,8 +136,11 @@ impl Logic for SetChannel {
         self.owes.next = self.open.val();
         self.replaced.next = self.took.q.val() & !self.waiting.q.val() & self.result_strobe.val();
 
-        // A result that was missing in its set, and has come since.
-        self.late_now.next = self.late.q.val() | (self.owed.q.val() & self.result_strobe.val());
+        // A result that was missing in its set, and has come since. One that comes behind it is that of another trigger.
+        self.late_now.next = self.late.q.val();
+        if self.result_strobe.val() {
+            self.late_now.next = self.owed.q.val();
+        }
         self.late.d.next = self.late_now.val() & !self.take.val();
         if self.result_strobe.val() {
             self.owed.d.next = false;

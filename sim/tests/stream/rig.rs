@@ -177,6 +177,15 @@ pub struct Rig {
 
 impl Rig {
     pub fn new(bytes: u64, channels: usize, collect: bool, push: bool) -> Self {
+        Self::with(bytes, channels, [collect, push], false)
+    }
+
+    /// One that collects, on a card whose channels have triggers of their own.
+    pub fn with_late_results(bytes: u64, channels: usize) -> Self {
+        Self::with(bytes, channels, [true, false], true)
+    }
+
+    fn with(bytes: u64, channels: usize, [collect, push]: [bool; 2], takes_late: bool) -> Self {
         Self {
             stream: Named::new(
                 Stream::new(bytes, channels, collect, push, SetParts::default()),
@@ -185,7 +194,7 @@ impl Rig {
             set: (0..channels)
                 .map(|n| {
                     Named::new(
-                        SetChannel::new(n, Protocol::Endat, false, SetParts::default()),
+                        SetChannel::new(n, Protocol::Endat, takes_late, SetParts::default()),
                         "set_channel",
                     )
                 })

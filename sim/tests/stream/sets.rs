@@ -274,6 +274,50 @@ fn the_next_trigger_closes_a_set_and_marks_who_is_missing() {
     }
 }
 
+/// A trigger, taken or not, and so many cycles.
+fn trigger(rig: &mut Rig, busy: bool, cycles: u64) {
+    rig.channel[0].busy = busy;
+    rig.trigger = true;
+    rig.step();
+    rig.channel[0].busy = true;
+    rig.run(cycles - 1);
+}
+
+/// Trigger A is missing in its set, and its result waits for a place; B's set is lost, B's result is there: it is none of A's.
+#[test]
+fn a_late_result_is_never_that_of_a_trigger_whose_set_is_lost() {
+    let mut rig = Rig::with_late_results(1024, 1);
+    trigger(&mut rig, false, 600); // A
+    trigger(&mut rig, true, 600);
+    result(&mut rig, 0, 0xA);
+    rig.run(50);
+    trigger(&mut rig, false, 1); // B, whose set the next trigger drops
+    trigger(&mut rig, true, 2);
+    result(&mut rig, 0, 0xB);
+    rig.run(600);
+    trigger(&mut rig, true, 600);
+    // One that is late, and has its place in the next set.
+    trigger(&mut rig, false, 600); // D
+    trigger(&mut rig, true, 600);
+    result(&mut rig, 0, 0xD);
+    rig.run(50);
+    trigger(&mut rig, true, 600);
+    let sets = Set::all(&rig.drain());
+    let missing = Part {
+        position: 0,
+        status: TAKEN | MISSING,
+    };
+    let none = Part::default();
+    let late = Part {
+        position: 0xD,
+        status: VALID | FRESH,
+    };
+    let parts: Vec<Part> = sets.iter().map(|s| s.parts[0]).collect();
+    assert_eq!(parts, [missing, none, none, none, missing, none, late]);
+    let lost: Vec<u8> = sets.iter().map(|s| s.lost).collect();
+    assert_eq!(lost, [0, 0, 1, 0, 0, 0, 0]);
+}
+
 /// Catches a set that tells a position as good that an upset has changed while it waited for the buffer.
 #[test]
 fn a_position_that_is_not_of_its_parity_is_told_as_upset() {
