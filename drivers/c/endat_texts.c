@@ -159,7 +159,7 @@ const char *endat_cause_text(uint32_t number)
 static const char *const meanings[] = {
     "The frame was good.",
     "DATA was HIGH before the frame began: the line is open, the encoder has no supply, or it is lost within a frame.",
-    "The encoder did not answer: it is silent, does not know the mode command, or needs a longer calculation time than configured.",
+    "The encoder did not answer: it is silent, does not know the mode command, or needs a longer calculation time than configured; or there is none, and the open line reads LOW.",
     "The start bit came at another phase than expected: a glitch, another cable, or a tcal that is not the configured one.",
     "The CRC of the answer is wrong: a bit was disturbed, the width is not the encoder's, or the sample is near an edge.",
     "The encoder reports an alarm in F1: a malfunction that can make positions wrong.",
@@ -246,7 +246,7 @@ const char *endat_cause_meaning(uint32_t number)
 static const char *const remedies[] = {
     "Nothing.",
     "Look at plug and supply. The card waits 30 ms and tries again.",
-    "Try the command 000111; raise tcal_max_ns; lower the clock. If no frame gets beyond the slow ones that measure the delay: tcal_max_ns counts there, too (a start bit at clock 15 needs 28000 at 200 kHz), and an encoder that leaves a frame after 2 us of HIGH needs a faster calibration_hz.",
+    "With no encoder: fit the fail-safe bias, which makes an open line HIGH. Otherwise try the command 000111; raise tcal_max_ns; lower the clock. If no frame gets beyond the slow ones that measure the delay: tcal_max_ns counts there, too (a start bit at clock 15 needs 28000 at 200 kHz), and an encoder that leaves a frame after 2 us of HIGH needs a faster calibration_hz.",
     "Widen start_window_ns, or filter_ns against glitches. The card measures the line delay again.",
     "Compare position_bits with the data sheet; look at `margin`; lower the clock; check termination and shield.",
     "Read the alarms (`param read 0xB9 0`), then clear them with the command 101101. After power-up an alarm is usual.",

@@ -11,8 +11,8 @@ super::cause::causes! {
         "DATA was HIGH before the frame began: the line is open, the encoder has no supply, or it is lost within a frame.",
         "Look at plug and supply. The card waits 30 ms and tries again.";
     NO_START_BIT = 2, "no_start_bit", "no start bit";
-        "The encoder did not answer: it is silent, does not know the mode command, or needs a longer calculation time than configured.",
-        "Try the command 000111; raise tcal_max_ns; lower the clock. If no frame gets beyond the slow ones that measure the delay: tcal_max_ns counts there, too (a start bit at clock 15 needs 28000 at 200 kHz), and an encoder that leaves a frame after 2 us of HIGH needs a faster calibration_hz.";
+        "The encoder did not answer: it is silent, does not know the mode command, or needs a longer calculation time than configured; or there is none, and the open line reads LOW.",
+        "With no encoder: fit the fail-safe bias, which makes an open line HIGH. Otherwise try the command 000111; raise tcal_max_ns; lower the clock. If no frame gets beyond the slow ones that measure the delay: tcal_max_ns counts there, too (a start bit at clock 15 needs 28000 at 200 kHz), and an encoder that leaves a frame after 2 us of HIGH needs a faster calibration_hz.";
     START_WINDOW = 3, "start_window", "start bit outside its window";
         "The start bit came at another phase than expected: a glitch, another cable, or a tcal that is not the configured one.",
         "Widen start_window_ns, or filter_ns against glitches. The card measures the line delay again.";
