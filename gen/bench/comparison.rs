@@ -134,11 +134,13 @@ fn clb(rows: &[CycleTime]) -> Result<Table, GenError> {
     );
     table.row(
         Basis::Measured,
-        "36 bits, 2 MHz, 000111: time of the frame",
+        "36 bits, 2 MHz, 000111: entire cycle",
         "about 35 us",
         {
+            let cycle = decimal(row.cycle_us, 2);
             let limit = decimal(row.frame_limit_us, 2);
-            format!("{}; the protocol needs {limit} us", us(channel.frame))
+            let frame = us(channel.frame);
+            format!("{cycle} us with the shortest recovery time, 10 us; the frame alone {frame}, of which the protocol needs {limit} us")
         },
     );
     table.row(
@@ -150,8 +152,14 @@ fn clb(rows: &[CycleTime]) -> Result<Table, GenError> {
     table.row(
         Basis::Measured,
         "left of the control cycle of 62.5 us",
-        "about 27.5 us",
-        us(62_500 * NS - channel.position),
+        "about 27.5 us behind the entire cycle",
+        {
+            let left = decimal(62.5 - row.cycle_us, 2);
+            let early = us(62_500 * NS - channel.position);
+            format!(
+                "{left} us behind the entire cycle; the position is there {early} before its end"
+            )
+        },
     );
     let most = decimal(row.cycles_per_s, 0);
     table.row(
@@ -160,8 +168,7 @@ fn clb(rows: &[CycleTime]) -> Result<Table, GenError> {
         "16 000",
         format!("16 000; at most {most}"),
     );
-    table.row(
-        Basis::Words,
+    table.words(
         "propagation delay compensation",
         "none; 2 MHz is the highest rate without it",
         "measured, then followed in each frame",
@@ -173,10 +180,9 @@ fn clb(rows: &[CycleTime]) -> Result<Table, GenError> {
         "–",
         longest,
     );
-    table.row(
-        Basis::Words,
+    table.words(
         "CRC",
-        "received, no errors told; where it is checked: –",
+        "\"without propagation delay compensation or CRC errors\"; where it is checked: –",
         "two in hardware, compared",
     );
     table.note("A receiver without compensation samples half a period after its own clock edge: at 2 MHz that is 250 ns, or 20 m of cable there and back.");
@@ -225,12 +231,12 @@ fn ti(rows: &[CycleTime]) -> Result<Table, GenError> {
         "8",
         samples_told(&preset),
     );
-    table.row(
-        Basis::Words,
+    table.words(
         "delay",
         "measured at the start, 200 kHz",
         "the same, then the mean of many edges follows it",
     );
+    table.words("CRC", "6 bits, as the page says", "5 bits, as EnDat has");
     let cycle = decimal(row.cycle_us, 2);
     table.row(
         Basis::Measured,
@@ -348,20 +354,13 @@ fn artinchip() -> Result<Table, GenError> {
             decimal(crop_ns, 0)
         ),
     );
-    table.row(
-        Basis::Words,
+    table.words(
         "errors to the current loop",
         "OR of selected ones",
         "OR of selected causes, alarm too",
     );
-    table.row(
-        Basis::Words,
-        "watchdog",
-        "driver off, 30 ms, then DATA LOW for tR",
-        "the same",
-    );
-    table.row(
-        Basis::Words,
+    table.words("watchdog", "driver off, 30 ms, then DATA LOW for tR; does not watch continuous mode, 101010, 100011 and 011100", "the same");
+    table.words(
         "status bits",
         "15",
         "all of them: [artinchip-status.md](artinchip-status.md)",
@@ -428,26 +427,18 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
             )
         },
     );
-    table.row(
-        Basis::Words,
+    table.words(
         "signal `link`",
         "frame ended well, position taken",
         "`result_strobe` with `fresh`",
     );
-    table.row(
-        Basis::Words,
+    table.words(
         "signal `check`",
         "CRC is right",
         "`crc_received` = `crc_computed`, cause not 4",
     );
-    table.row(
-        Basis::Words,
-        "signal `err`",
-        "F1 F2",
-        "flags F1 and F2, causes 5 and 6",
-    );
-    table.row(
-        Basis::Words,
+    table.words("signal `err`", "F1 F2", "flags F1 and F2, causes 5 and 6");
+    table.words(
         "signal `dir`",
         "direction of the transceiver",
         "`endat_data_oe`",

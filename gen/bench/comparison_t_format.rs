@@ -36,7 +36,7 @@ pub(super) fn asynchronous() -> Result<Table, GenError> {
         Basis::Synthesis,
         "receiver alone",
         "236 to 248 LUT, 256 FF (Microchip's core for the same protocol)",
-        format!("{receiver} LUT4, {receiver_ff} FF (iCE40)"),
+        format!("{receiver} LUT4, {receiver_ff} FF (iCE40): larger"),
     );
     table.row(
         Basis::Description,

@@ -63,6 +63,11 @@ impl Table {
         self.rows.push((basis, cells));
     }
 
+    /// A row of words.
+    pub fn words(&mut self, what: &str, theirs: &str, ours: &str) {
+        self.row(Basis::Words, what, theirs, ours);
+    }
+
     /// What stands below it.
     pub fn note(&mut self, text: impl Into<String>) {
         self.notes = text.into();

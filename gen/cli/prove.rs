@@ -30,9 +30,9 @@ pub struct ProveArgs {
     /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
     #[arg(long, value_name = "DELAY_CYCLES")]
     frames: Option<u32>,
-    /// DATA while nobody drives it, in these frames
-    #[arg(long, value_enum, default_value = "anything", requires = "frames")]
-    undriven: Undriven,
+    /// DATA while nobody drives it, in these frames [default: low behind an input filter, otherwise anything]
+    #[arg(long, value_enum, requires = "frames")]
+    undriven: Option<Undriven>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -110,7 +110,9 @@ fn frames(
     project: &Project,
     delay_cycles: u32,
 ) -> Result<Outcome, GenError> {
-    let line = Line::usual(delay_cycles, arguments.undriven, project.card.system_hz);
+    let undriven = arguments.undriven;
+    let undriven = undriven.unwrap_or_else(|| Undriven::usual(&project.card));
+    let line = Line::usual(delay_cycles, undriven, project.card.system_hz);
     let steps = Steps::new(None);
     let begin = |step: &str| steps.begin(step);
     let mut report = prove::frames::prove(subject, project, line, PHASES_MAX, &begin)?;

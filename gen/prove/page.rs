@@ -52,7 +52,7 @@ any more. Where all phases of the microsecond are proved, that is every frame fo
 
 Settings, tcal (5 us), tm (11 us) and the delay are those of the row; the encoder is `gen/prove/frames/encoder.sv`, strict, and of its own making. That additional data have been
 selected is taken as given; their warning bit is LOW. DATA that nobody drives is anything in every cycle, or LOW (`--undriven low`): with an input filter, which counts what DATA does
-meanwhile, and with a cable so long that the receiver listens before the encoder drives, only the second is proved. Edges that come where they are expected leave a tracked phase (*edges* in the
+meanwhile, and with a cable so long that the receiver listens before the encoder drives, only the second is proved. Behind an input filter the command takes LOW by itself. Edges that come where they are expected leave a tracked phase (*edges* in the
 table) where it is, whichever bits have one; what jitter and a delay that changes do to it is outside, as are requests, a clock that goes on, and cards without start values. `--out DIR` leaves a run that breaks as waveform and drawing.
 
 | bits | command | additional data | cycles a bit | delay, one way | undriven DATA | phase from | first, other frames, cycles | bits at rest with a level, free | phases | time | |

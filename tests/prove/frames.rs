@@ -2,7 +2,8 @@
 
 use crate::program::Dir;
 use crate::tools;
-use endat_gen::prove::frames::{prove_case, FrameCase, FrameReport, Undriven, PLAIN};
+use endat_gen::config::load_preset;
+use endat_gen::prove::frames::{prove_case, Broken, FrameCase, FrameReport, Line, Undriven, PLAIN};
 use endat_gen::prove::Subject;
 use endat_sim::diagram::is_drawing;
 
@@ -228,4 +229,58 @@ fn a_phase_that_edges_move_is_refused() {
         let report = broken(&TRACKED, "phase_tracker", from, to);
         assert!(report.broken.is_some(), "{to}: {report}");
     }
+}
+
+/// An input filter counts DATA while nobody drives it: there the command takes LOW by itself.
+#[test]
+fn undriven_data_is_low_behind_an_input_filter_and_otherwise_anything() {
+    for (name, filtered) in [("s6_two_channel", true), ("artinchip_endat_if", false)] {
+        let mut card = load_preset(name).unwrap().card;
+        for channel in &mut card.channels {
+            assert!(
+                channel.filter_cycles > 0 || channel.filter_half || !filtered,
+                "{name}"
+            );
+            if !filtered {
+                (channel.filter_cycles, channel.filter_half) = (0, false);
+            }
+        }
+        let usual = match filtered {
+            true => Undriven::Low,
+            false => Undriven::Anything,
+        };
+        assert_eq!(Undriven::usual(&card), usual, "{name}");
+    }
+}
+
+#[test]
+fn frames_that_are_not_proved_name_the_option_that_asks_for_less() {
+    let report = |undriven| FrameReport {
+        name: "card".into(),
+        command: "111000".into(),
+        position_bits: 25,
+        period_cycles: 8,
+        phase: "first frame",
+        infos: 0,
+        line: Line::usual(3, undriven, 8_000_000),
+        frame_cycles: [0, 0],
+        rest_bits: [0, 0],
+        phases: [8, 8],
+        seconds: 1.0,
+        broken: Some(Broken {
+            what: "no result".into(),
+            run: "a frame",
+            cycle: 7,
+            is_reached: false,
+            trace: None,
+            file: None,
+        }),
+    };
+    let said = report(Undriven::Anything).to_string();
+    assert!(
+        said.contains("NOT PROVED") && said.contains("--undriven low"),
+        "{said}"
+    );
+    let said = report(Undriven::Low).to_string();
+    assert!(!said.contains("--undriven"), "{said}");
 }

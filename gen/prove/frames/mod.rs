@@ -23,7 +23,7 @@ use crate::config::Project;
 use crate::error::GenError;
 use crate::scratch;
 use clap::ValueEnum;
-use endat_hdl::config::{ChannelConfig, PhaseSource};
+use endat_hdl::config::{CardConfig, ChannelConfig, PhaseSource};
 use endat_hdl::protocol::ModeCommand;
 use rtl_design::elaborate::Module;
 use serde::Serialize;
@@ -46,6 +46,16 @@ pub enum Undriven {
     Anything,
     /// LOW, as a line with a bias is.
     Low,
+}
+
+impl Undriven {
+    /// The one that can be proved: an input filter counts DATA while nobody drives it, so anything there may come back as anything.
+    pub fn usual(card: &CardConfig) -> Self {
+        match card.endat_channels().next() {
+            Some((_, c)) if c.filter_cycles > 0 || c.filter_half => Self::Low,
+            _ => Self::Anything,
+        }
+    }
 }
 
 impl fmt::Display for Undriven {
@@ -201,6 +211,9 @@ impl fmt::Display for FrameReport {
             "every position arrives as it was sent, from power-up on, frame after frame: proved";
         let some = "every position arrives as it was sent, where frames begin in these phases of the microsecond: proved";
         let said = match (&self.broken, phases == of) {
+            (Some(broken), _) if !broken.is_reached && self.line.undriven == Undriven::Anything => {
+                format!("{broken}; --undriven low asks for less, a line with a bias")
+            }
             (Some(broken), _) => broken.to_string(),
             (None, true) => all.into(),
             (None, false) => some.into(),
