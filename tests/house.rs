@@ -37,17 +37,20 @@ const PORTS: usize = 30;
 const LONGER: &[(&str, usize)] = &[];
 
 /// Files, beside those of its own, that name every protocol so that cards can have channels of it: a further one has a line or an arm there.
-const NAME_PROTOCOLS: [&str; 6] = [
+const NAME_PROTOCOLS: [&str; 9] = [
+    "gen/campaign/budget.rs",
+    "gen/cli/campaign/tallies.rs",
     "gen/config/keys.rs",
     "gen/protocols.rs",
     "hdl/encoder_port.rs",
     "hdl/protocols.rs",
     "regs/protocols.rs",
+    "sim/campaign/other/mod.rs",
     "sim/lib.rs",
 ];
 /// Files that name T-format for what only it has, or has besides: words of its own, a receiver that is no card, calls of drivers and host, a
 /// scenario, campaigns.
-const NAME_T_FORMAT: [&str; 26] = [
+const NAME_T_FORMAT: [&str; 24] = [
     "drivers/rust/lib.rs",
     "gen/area/flows.rs",
     "gen/area/subject.rs",
@@ -55,7 +58,6 @@ const NAME_T_FORMAT: [&str; 26] = [
     "gen/bench/mod.rs",
     "gen/campaign/configurations/mod.rs",
     "gen/campaign/mutants/mod.rs",
-    "gen/cli/campaign/tallies.rs",
     "gen/cli/emit.rs",
     "gen/cli/mod.rs",
     "gen/cli/new/questions.rs",
@@ -72,7 +74,6 @@ const NAME_T_FORMAT: [&str; 26] = [
     "regs/lib.rs",
     "regs/part.rs",
     "sim/bench/mod.rs",
-    "sim/campaign/mod.rs",
     "sim/scenario/mod.rs",
 ];
 

@@ -1,5 +1,6 @@
 //! How much may go wrong: all limits in one place. A budget that is asserted fails the campaign; the others are what is wanted.
 
+use endat_sim::campaign::other::{ssi, t_format};
 use endat_sim::campaign::{Row, Tally};
 use std::fmt::Write;
 
@@ -50,8 +51,18 @@ pub fn is_case(row: &Row) -> bool {
 /// What a receiver with a CRC of 5 bits lets through: 1 of 32 of the frames that it refuses for it, and those.
 const CRC_BOUND_PER_MILLE: f64 = 1000.0 / 32.0;
 
+/// A port of another protocol, whose causes have other numbers, and whose positions have another check sum or none.
+fn is_other(row: &Row) -> bool {
+    of_port(row, ssi::SUBJECT) || of_port(row, t_format::SUBJECT)
+}
+
+/// One of this port, in whatever kind of frame.
+fn of_port(row: &Row, subject: &str) -> bool {
+    row.subject.split(' ').next() == Some(subject)
+}
+
 fn is_crc_or_silent(row: &Row) -> bool {
-    !is_setting(row) && (row.class == "silent" || row.class == "cause_4")
+    !is_setting(row) && !is_other(row) && (row.class == "silent" || row.class == "cause_4")
 }
 
 fn is_card(row: &Row) -> bool {
@@ -62,8 +73,11 @@ fn is_setting(row: &Row) -> bool {
     row.kind.starts_with("setting")
 }
 
+/// The SSI port where each position comes twice.
+const SSI_TWICE: &str = "ssi_port position_twice";
+
 /// All of them.
-pub const BUDGETS: [Budget; 21] = [
+pub const BUDGETS: [Budget; 25] = [
     Budget {
         campaign: "upsets",
         what: "wrong positions told as good",
@@ -95,6 +109,22 @@ pub const BUDGETS: [Budget; 21] = [
         of: |r| is_case(r) && is_card(r),
         limit_per_mille: 1.0,
         is_asserted: false,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "wrong positions of the T-format port told as good",
+        bad: |r| r.class == "silent" && of_port(r, t_format::SUBJECT),
+        of: |r| is_case(r) && of_port(r, t_format::SUBJECT),
+        limit_per_mille: 5.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "wrong positions of the SSI port told as good",
+        bad: |r| r.class == "silent" && of_port(r, ssi::SUBJECT),
+        of: |r| is_case(r) && of_port(r, ssi::SUBJECT),
+        limit_per_mille: 5.0,
+        is_asserted: true,
     },
     Budget {
         campaign: "upsets",
@@ -131,9 +161,25 @@ pub const BUDGETS: [Budget; 21] = [
     Budget {
         campaign: "faults",
         what: "wrong positions told as good, of those and the CRC errors",
-        bad: |r| r.class == "silent",
+        bad: |r| r.class == "silent" && !is_other(r),
         of: is_crc_or_silent,
         limit_per_mille: CRC_BOUND_PER_MILLE,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "faults",
+        what: "wrong positions of the T-format port told as good",
+        bad: |r| r.class == "silent" && of_port(r, t_format::SUBJECT),
+        of: |r| is_case(r) && of_port(r, t_format::SUBJECT),
+        limit_per_mille: 5.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "faults",
+        what: "wrong positions of the SSI port with two copies told as good",
+        bad: |r| r.class == "silent" && r.subject == SSI_TWICE,
+        of: |r| is_case(r) && r.subject == SSI_TWICE,
+        limit_per_mille: 5.0,
         is_asserted: false,
     },
     Budget {
@@ -155,7 +201,7 @@ pub const BUDGETS: [Budget; 21] = [
     Budget {
         campaign: "garbage",
         what: "wrong positions told as good, of those and the CRC errors",
-        bad: |r| r.class == "silent" && !is_setting(r),
+        bad: |r| r.class == "silent" && !is_setting(r) && !is_other(r),
         of: is_crc_or_silent,
         limit_per_mille: CRC_BOUND_PER_MILLE,
         is_asserted: false,
@@ -163,8 +209,8 @@ pub const BUDGETS: [Budget; 21] = [
     Budget {
         campaign: "garbage",
         what: "wrong positions told as good after a setting has changed",
-        bad: |r| r.class == "silent" && is_setting(r),
-        of: |r| is_case(r) && is_setting(r),
+        bad: |r| r.class == "silent" && is_setting(r) && !is_other(r),
+        of: |r| is_case(r) && is_setting(r) && !is_other(r),
         limit_per_mille: 0.0,
         is_asserted: false,
     },

@@ -82,8 +82,8 @@ fn title(part: &Part) -> Option<(&'static str, &'static str)> {
     Some(match part.identity.campaign.as_str() {
         "upsets" if is_safety => ("Upsets of a card with every monitor", "The card from above with all parts of `[safety]` ([safety.md](safety.md)); of this one the flip-flops of the channels are inverted, too. A second controller reads every result at the second interface: what it refuses counts as told, a wrong position that it takes as silent; the two controllers do not compare what they have. No forced error is due within a case, nor is the recovery counter read."),
         "upsets" => ("Upsets", "Every flip-flop inverted, at so many moments of every kind of frame, and of the card of every activity; system clock 32 MHz, 8 cycles to a bit, 25 bits, 20 m."),
-        "faults" => ("Faults of the line", "Each begins in the frame and ends behind it, or ends in it, at every quarter of a bit; with each recovery time tm (000111: from 10 us) and cable."),
-        "garbage" => ("Spoilt frames", "One in each case, at random. A word is taken by a CRC of 5 bits with 1 in 32, with F1 and F2 besides with 1 in 128."),
+        "faults" => ("Faults of the line", "Each begins in the frame and ends behind it, or ends in it, at every quarter of a bit; with each recovery time tm (000111: from 10 us) and cable. The T-format port and the SSI port have a line without delay, and faults of their own; the positions of an SSI port that asks for one copy have no check sum."),
+        "garbage" => ("Spoilt frames", "One in each case, at random. Of the T-format port and the SSI port the encoder, the line or a setting is wrong; causes are codes of the protocol. A word is taken by a CRC of 5 bits with 1 in 32, with F1 and F2 besides with 1 in 128."),
         "accept" => ("Accept set", "Every word that encoders of 1 to 13 bits can send, error bits and CRC included, against a predicate that shares no code with the core."),
         _ => return None,
     })

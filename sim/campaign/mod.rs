@@ -4,9 +4,9 @@ mod case;
 pub mod faults;
 pub mod garbage;
 mod list;
+pub mod other;
 pub mod port;
 mod run;
-pub mod t_format;
 mod tally;
 #[cfg(test)]
 mod tests;

@@ -12,8 +12,8 @@ use crate::error::{shorten, shown, GenError};
 use crate::number::{number, number_if};
 use endat_sim::campaign::faults::Faults;
 use endat_sim::campaign::garbage::{AcceptSet, Garbage, WIDEST_BITS};
+use endat_sim::campaign::other::{ssi, t_format, OtherFrames, OtherUpsets};
 use endat_sim::campaign::port::Port;
-use endat_sim::campaign::t_format::{self, TFormatUpsets};
 use endat_sim::campaign::upsets::{Draw, Upsets};
 use endat_sim::campaign::{count, run_shard, Campaign, CampaignError, Joined, Shard};
 use std::time::Instant;
@@ -159,10 +159,11 @@ fn boxed<C: Campaign + 'static>(made: Result<C, CampaignError>) -> Made {
 struct Subjects {
     ports: Vec<Port>,
     is_t_format: bool,
+    is_ssi: bool,
     card: Option<CardSubject>,
 }
 
-/// Of the random cases, the T-format port and the card have an eighth each, if others are there.
+/// Of the random cases, the ports of other protocols and the card have an eighth each, if others are there.
 const SHARE: u64 = 8;
 
 /// Upsets of these subjects.
@@ -170,9 +171,10 @@ fn upsets(subjects: &Subjects, draw: Draw, seed: u64, only: &str) -> Made {
     let Subjects {
         ports,
         is_t_format,
+        is_ssi,
         card,
     } = subjects;
-    let flags = [!ports.is_empty(), *is_t_format, card.is_some()];
+    let flags = [!ports.is_empty(), *is_t_format, card.is_some(), *is_ssi];
     let count = flags.into_iter().filter(|is_there| *is_there).count() as u64;
     let share = |cases: u64, index: usize| match (count, flags) {
         (1, _) => cases,
@@ -191,10 +193,45 @@ fn upsets(subjects: &Subjects, draw: Draw, seed: u64, only: &str) -> Made {
         joined.push(boxed(Upsets::new(ports, drawn(0), seed, only))?);
     }
     if *is_t_format {
-        joined.push(boxed(TFormatUpsets::new(drawn(1), seed, only))?);
+        let made = OtherUpsets::<t_format::TFormat>::new(drawn(1), seed, only);
+        joined.push(boxed(made)?);
+    }
+    if *is_ssi {
+        joined.push(boxed(OtherUpsets::<ssi::Ssi>::new(drawn(3), seed, only))?);
     }
     if let Some(card) = card {
         joined.push(Box::new(CardUpsets::new(*card, drawn(2), seed, only)?));
+    }
+    Ok(Box::new(Joined(joined)))
+}
+
+/// Spoilt frames of the T-format port, and of the SSI port, for each of EnDat's, if those are there, too.
+const SPOILT_SHARE: u64 = 40;
+
+/// Spoilt frames of each port of another protocol.
+fn of_others(subjects: &Subjects, cases: u64) -> u64 {
+    match subjects.ports.is_empty() {
+        true => cases,
+        false => cases / SPOILT_SHARE,
+    }
+}
+
+/// Frames that are disturbed, of EnDat ports and of the others that are asked for.
+fn disturbed(
+    subjects: &Subjects,
+    of_ports: Result<Box<dyn Campaign>, GenError>,
+    of_t_format: impl FnOnce() -> Result<OtherFrames<t_format::TFormat>, CampaignError>,
+    of_ssi: impl FnOnce() -> Result<OtherFrames<ssi::Ssi>, CampaignError>,
+) -> Made {
+    let mut joined = vec![];
+    if !subjects.ports.is_empty() {
+        joined.push(of_ports?);
+    }
+    if subjects.is_t_format {
+        joined.push(boxed(of_t_format())?);
+    }
+    if subjects.is_ssi {
+        joined.push(boxed(of_ssi())?);
     }
     Ok(Box::new(Joined(joined)))
 }
@@ -203,16 +240,18 @@ fn upsets(subjects: &Subjects, draw: Draw, seed: u64, only: &str) -> Made {
 fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, Made), GenError> {
     let chosen = arguments.subject.as_deref();
     let is_t_format = chosen.is_none_or(|name| name == t_format::SUBJECT);
+    let is_ssi = chosen.is_none_or(|name| name == ssi::SUBJECT);
     let card = chosen.map_or(Some(CardSubject::Plain), CardSubject::named);
     let ports: Vec<Port> = match chosen {
         Some(name) => Port::named().filter(|port| port.name() == name).collect(),
         None => Port::ALL.to_vec(),
     };
     let is_upsets = matches!(arguments.name, Name::Upsets);
-    if ports.is_empty() && !(is_upsets && (is_t_format || card.is_some())) {
+    let has_others = is_t_format || is_ssi;
+    if ports.is_empty() && !(has_others || is_upsets && card.is_some()) {
         let mut names: Vec<&str> = Port::named().map(Port::name).collect();
+        names.extend([t_format::SUBJECT, ssi::SUBJECT]);
         if is_upsets {
-            names.push(t_format::SUBJECT);
             names.extend(CardSubject::ALL.map(CardSubject::name));
         }
         return Err(GenError::input(format!(
@@ -228,6 +267,12 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
         (_, Some(text)) => number("--cases", text, 1..=CASES_MAX).map(Some),
         _ => Ok(None),
     };
+    let subjects = Subjects {
+        ports,
+        is_t_format,
+        is_ssi,
+        card,
+    };
     Ok(match arguments.name {
         Name::Faults => {
             let step = match (arguments.quick, &arguments.step) {
@@ -236,12 +281,26 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
                 _ => 1,
             };
             let plan = format!("step {step}; seed {seed}; subject {subject}");
-            ("faults", plan, boxed(Faults::new(&ports, step, seed)))
+            let of_ports = boxed(Faults::new(&subjects.ports, step, seed));
+            let made = disturbed(
+                &subjects,
+                of_ports,
+                || OtherFrames::faults(step, seed),
+                || OtherFrames::faults(step, seed),
+            );
+            ("faults", plan, made)
         }
         Name::Garbage => {
             let cases = cases(Some(GARBAGE_USUAL))?.unwrap_or(QUICK_CASES);
             let plan = format!("seed {seed}; subject {subject}");
-            ("garbage", plan, boxed(Garbage::new(&ports, cases, seed)))
+            let others = of_others(&subjects, cases);
+            let made = disturbed(
+                &subjects,
+                boxed(Garbage::new(&subjects.ports, cases, seed)),
+                || OtherFrames::garbage(others, seed),
+                || OtherFrames::garbage(others, seed),
+            );
+            ("garbage", plan, made)
         }
         Name::Accept => {
             let widest = match arguments.quick {
@@ -265,11 +324,6 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
                 Draw::Grid { moments } => format!("moments {moments}"),
             };
             let plan = format!("{how}; seed {seed}; subject {subject}; only {only}*");
-            let subjects = Subjects {
-                ports,
-                is_t_format,
-                card,
-            };
             let of = |only: &str| {
                 let made = upsets(&subjects, draw, seed, only)?;
                 match count(made.as_ref()) {
