@@ -40,7 +40,8 @@ fn no_position_is_wrong_after_a_reset(moments: u64) {
         let clocks = u64::from(WIDTH + 1) * (1 + u64::from(twice));
         let frame = clocks * PERIOD + RECOVERY_MAX_US * SYSTEM_MHZ;
         for moment in 0..moments {
-            let cycle = rng.in_range(moment * frame / moments, (moment + 1) * frame / moments - 1);
+            let (from, to) = (moment * frame / moments, (moment + 1) * frame / moments);
+            let cycle = rng.in_range(from, to.max(from + 1) - 1);
             let mut run = start.clone();
             run.trigger();
             run.cycles(cycle);
