@@ -10,6 +10,8 @@
 // confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
 // withdraw   ____________/\________    or: it has not; what was before comes back
 //
+// Where the position before is not kept, no position is valid after withdraw, until the next good one.
+//
 // What is held is guarded: its parity is taken when it has been loaded and compared in every cycle from then on. A register that
 // was upset makes the position invalid, with a cause of its own.
 //
@@ -359,11 +361,12 @@ module s6_two_channel_snapshot (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
+    localparam         KEEPS_EARLIER = 1'b1;
     // one_set: Position, its width, CRC, F2 and time change together, and only with a good result, or back when that was withdrawn.
     // one_number_each: Each result has the next number, and nothing else changes it.
     // bad_is_not_fresh: A result without good position leaves the position, and says that it is an earlier one.
     // faults_with_results: Cause and flags change only with a result, a fault after it, or when the stored position was found changed.
-    // restored: A position that is withdrawn gives way to the last good one, with its time.
+    // restored: A position that is withdrawn gives way to the last good one, with its time; where that is not kept, no position is valid.
     reg f_past_valid; initial f_past_valid = 1'b0;
     reg [47:0] f_last; reg [31:0] f_last_stamp; reg f_last_valid;
     wire [91:0] f_set = {held, held_width, held_crc, held_f2, stamp};
@@ -380,12 +383,12 @@ module s6_two_channel_snapshot (
             `FORMAL_LABEL(one_number_each) assert (count == $past(count) + {15'd0, $past(publish)});
             if ($past(publish & !good & !take_back)) `FORMAL_LABEL(bad_is_not_fresh) assert (!is_fresh & $stable(f_set));
             if (!$past(publish | late_fault | upset_now)) `FORMAL_LABEL(faults_with_results) assert ($stable({cause_held, flags_held}));
-            if ($past(take_back & !take_good)) `FORMAL_LABEL(restored) assert ((held == $past(earlier)) & (stamp == $past(earlier_stamp)) & !is_fresh);
+            if ($past(take_back & !take_good)) `FORMAL_LABEL(restored) assert (!is_fresh & (KEEPS_EARLIER ? (held == $past(earlier)) & (stamp == $past(earlier_stamp)) : !valid));
         end
     end
     // at rest the stored position fits its parity; the proof of a frame begins and ends there
     wire f_whole = loaded | (parity_now == parity);
-    always @* `FORMAL_LABEL(restored_same) assert (!f_past_valid | !unconfirmed | ((f_last == earlier) & (f_last_stamp == earlier_stamp) & (f_last_valid == earlier_valid)));
+    always @* `FORMAL_LABEL(restored_same) assert (!KEEPS_EARLIER | !f_past_valid | !unconfirmed | ((f_last == earlier) & (f_last_stamp == earlier_stamp) & (f_last_valid == earlier_valid)));
 `endif
 `undef FORMAL_LABEL
 `endif
