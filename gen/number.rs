@@ -3,6 +3,14 @@
 use crate::error::{shown, GenError};
 use std::ops::RangeInclusive;
 
+/// A number as people write it: 3_125_000.
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev();
+    let groups = groups.map(|group| String::from_utf8_lossy(group).into_owned());
+    groups.collect::<Vec<_>>().join("_")
+}
+
 /// A number as people type it, within `range`.
 pub fn number(flag: &str, text: &str, range: RangeInclusive<u64>) -> Result<u64, GenError> {
     let (low, high) = (range.start(), range.end());

@@ -63,8 +63,13 @@ impl<T: Transport> Card<T> {
         let begin = Instant::now();
         let mut is_long = Some(is_long);
         for channel in self.endat_channels() {
-            let running = self.place(&format!("service{channel}.state.initialising"))?;
-            while self.read(&running)? == 1 && begin.elapsed() < INITIALISATION {
+            let state = |field| format!("service{channel}.state.{field}");
+            let running = self.place(&state("initialising"))?;
+            // Just after power-up the service has not begun.
+            let starts = self.place(&state("starts"))?;
+            while (self.read(&running)? == 1 || self.read(&starts)? == 0)
+                && begin.elapsed() < INITIALISATION
+            {
                 has_waited = true;
                 if begin.elapsed() > LONG {
                     if let Some(tell) = is_long.take() {

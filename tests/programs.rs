@@ -11,7 +11,6 @@ mod integrators;
 #[allow(dead_code)] // other topics take the rest
 mod program;
 mod python;
-mod shmoo;
 mod sim;
 #[allow(dead_code, unused_imports)]
 mod tools;

@@ -22,7 +22,6 @@ mod trigger;
 pub(crate) mod words;
 
 pub use names::{check_name, NAME_MAX};
-pub(crate) use start::grouped;
 pub use start::preset_for;
 
 use crate::board::{Assignment, Board, Pll};

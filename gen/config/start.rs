@@ -47,14 +47,14 @@ pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, Gen
             ("endat", "clock_hz", start.clock_hz),
         ];
         for (table, key, hz) in clocks {
-            edits.extend(value(table, key).map(|span| (span, grouped(hz))));
+            edits.extend(value(table, key).map(|span| (span, crate::number::grouped(hz))));
         }
     }
     // A slower link than the preset's, where the board's chip is slower.
     if let Some(span) = value("link", "baud") {
         let asked = text.get(span.clone()).and_then(number);
         if asked.is_some_and(|baud| baud > board.uart_baud_max) {
-            edits.push((span, grouped(board.uart_baud_max)));
+            edits.push((span, crate::number::grouped(board.uart_baud_max)));
         }
     }
     edits.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
@@ -92,14 +92,6 @@ fn number(text: &str) -> Option<u64> {
     text.replace('_', "").parse().ok()
 }
 
-/// A number as people write it: 3_125_000.
-pub fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let groups = digits.as_bytes().rchunks(3).rev();
-    let groups = groups.map(|group| String::from_utf8_lossy(group).into_owned());
-    groups.collect::<Vec<_>>().join("_")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,7 +110,10 @@ mod tests {
             assert_eq!(project.board, Some(board));
             assert!(text.contains(&format!("name = {name:?}")), "{text}");
         }
-        assert_eq!([grouped(7), grouped(3_125_000)], ["7", "3_125_000"]);
+        assert_eq!(
+            [crate::number::grouped(7), crate::number::grouped(3_125_000)],
+            ["7", "3_125_000"]
+        );
     }
 
     /// Catches a preset that asks for more than the chip behind the connector of the host can do.

@@ -1,6 +1,6 @@
 //! Numbers that were written with a unit: a key's name has its unit, and its value is a whole number.
 
-use crate::config::grouped;
+use crate::number::grouped;
 
 /// Units that a value may be written with, by the ending of the key: what one of each is in the key's own.
 const UNITS: [(&str, &[(&str, f64)]); 6] = [

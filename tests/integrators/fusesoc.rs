@@ -75,6 +75,7 @@ module soc_tb;
         enable = 1'b0;
         cs_n = 1'b0;
         write_n = 1'b0;
+        repeat (6000) @(negedge clk); // the receiver waits after power-up
         repeat (10) @(negedge clk);
         write_n = 1'b1;
         repeat (1000) @(negedge clk);

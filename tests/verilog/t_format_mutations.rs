@@ -210,8 +210,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "trigger within a request of the host not told",
         PORT,
-        "if (trigger & is_busy) begin",
-        "if (trigger & is_busy & !is_own) begin",
+        "if (loses) begin",
+        "if (loses & !is_own) begin",
     ),
     mutation(
         "a trigger sends the host's last request",

@@ -2,14 +2,13 @@
 
 use super::questions::{form_of, has_board, has_uart, Answers, Of, NOTHING, QUESTIONS};
 use crate::config::base::takes;
-use crate::config::grouped;
 use crate::config::keys::{
     self, Key, Kind, Usual, CARD_FORM, CHANNELS, COMMON, ENDAT_FORM, KEYS, TABLES,
 };
 use crate::error::GenError;
 use crate::form::key::head;
 use crate::json_schema::plain;
-use crate::number::number;
+use crate::number::{grouped, number};
 use endat_hdl::card::bus::HostBus;
 use std::fmt::Write;
 
