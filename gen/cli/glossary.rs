@@ -29,7 +29,7 @@ fn without_links(text: &str) -> String {
     plain + rest
 }
 
-/// What a row may be asked for by, in lower case: each of its words, and the symbol that one ends with, such as tD.
+/// Names of a row in lower case: each of its words, and the symbol at the end of one, such as tD.
 fn names_of(words: &str) -> impl Iterator<Item = String> + '_ {
     words.split(", ").flat_map(|word| {
         let last = word.rsplit(' ').next().filter(|last| *last != word);

@@ -22,6 +22,7 @@ fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String
     let (key, value) = written.and_then(|l| l.split_once('=')).unwrap_or_default();
     let value = value.split('#').next().unwrap_or_default().trim();
     let digits = value.len() > 1 && value.chars().all(|c| c.is_ascii_digit() || c == '_');
+    let with_unit = quantity::remedy(key.trim(), value);
     let remedy = match () {
         () if digits && value.starts_with('0') && key.trim() == "command" => {
             format!("put it in quotes: command = \"{value}\"")
@@ -31,9 +32,6 @@ fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String
             let number = if number.is_empty() { "0" } else { number };
             format!("leave the first 0 out: {} = {number}", key.trim())
         }
-        () if quantity::remedy(key.trim(), value).is_some() => {
-            quantity::remedy(key.trim(), value).unwrap_or_default()
-        }
         () if written.is_some_and(|l| l.trim_start().starts_with("[channel]")) => {
             "there is one for each channel: write [[channel]]".into()
         }
@@ -41,7 +39,7 @@ fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String
             let span = error.span().and_then(|span| source.text().get(span));
             format!("{} stands twice, remove one", span.unwrap_or(key).trim())
         }
-        () => "correct the line".into(),
+        () => with_unit.unwrap_or_else(|| "correct the line".into()),
     };
     format!("not TOML: {message}; {}", shorten(&remedy))
 }

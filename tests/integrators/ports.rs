@@ -105,7 +105,7 @@ fn of_python(line: &str) -> Option<&str> {
     Some(rest.split_once('=')?.0)
 }
 
-/// What is wrong with the files of a core.
+/// Ports that a file of a core names and its module lacks, and the other way round.
 fn wrong(name: &str, files: &[Artifact], language: Language) -> Vec<String> {
     let text = |end: &str| {
         let path = format!("{name}{end}");

@@ -3,7 +3,7 @@
 
 /// Steps of the same length that are a clock, from which a time that is off can be told.
 const STEADY: u32 = 16;
-/// Text ends behind nanoseconds, and a moment is one of the card's clock.
+/// Text rounds to nanoseconds; a time is a whole number of cycles of the card's clock.
 const TIME_OFF_S: f64 = 150e-9;
 /// The part of a step that a time may be off besides.
 const TIME_OFF: f64 = 1e-3;

@@ -163,7 +163,7 @@ const MACHINE: [(&str, usize); 6] = [
     ("address", 8),
     ("value", 16),
 ];
-/// What the host has written: a watchdog that no frame meets, and no check of the recovery time.
+/// `limits` as the host writes them: no frame reaches the watchdog, and the recovery time is not checked.
 const LIMITS: u32 = 0x0000_0FA3;
 const CONTINUOUS: u32 = 2;
 
