@@ -21,6 +21,7 @@ struct Link {
     busy: u64,
     /// Accesses until one whose end is lost.
     left: Option<u64>,
+    accesses: u64,
 }
 
 impl Link {
@@ -37,6 +38,7 @@ impl Link {
             cycle: 0,
             busy: 0,
             left: None,
+            accesses: 0,
         }
     }
 
@@ -69,6 +71,7 @@ impl Link {
                 uut.bank.read_byte.next = u64::from(byte).into();
             }
             self.busy = 40;
+            self.accesses += 1;
             self.left = self.left.map(|left| left.wrapping_sub(1));
             if self.left == Some(0) {
                 self.busy = 0;
@@ -185,6 +188,8 @@ fn a_command_of_no_words_does_nothing() {
     let mut link = Link::new();
     assert!(link.exchange(&[1, 0, 0, 0, 0, 1]).is_empty());
     assert!(link.exchange(&[2, 0, 0, 0, 0, 1]).is_empty());
+    // Nor a read that nobody hears: some words change when they are read.
+    assert_eq!(link.accesses, 0);
     link.words.insert(1, 9);
     assert_eq!(link.exchange(&[2, 1, 0, 0, 0, 1]), [0, 0, 0, 9]);
     assert!(link.writes.is_empty());

@@ -120,7 +120,8 @@ fn every_request_brings_its_fields_and_leaves_the_others() {
         for request in Request::ALL {
             if request == Request::ReadEeprom {
                 // Still busy from the write.
-                assert_eq!(rig.memory(0xD, 9, 0).cause, cause::EEPROM_BUSY);
+                let busy = rig.memory(0xD, 9, 0);
+                assert_eq!((busy.cause, busy.fresh), (cause::EEPROM_BUSY, false));
                 rig.wait_us(6_000);
             }
             let map = rig.memory(request.id(), 9, 0x77);
