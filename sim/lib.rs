@@ -9,6 +9,7 @@ mod decimal;
 pub mod diagram;
 pub mod encoder;
 pub mod frame;
+mod journal;
 pub mod line;
 pub mod rng;
 pub mod scenario;
@@ -21,6 +22,7 @@ mod test_receiver;
 pub mod wave;
 
 pub use decimal::decimal;
+pub use journal::Journal;
 
 /// A moment or a span, in picoseconds.
 pub type Time = u64;

@@ -59,6 +59,8 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+/// Frames that its encoders note, at least: nobody asks for older ones.
+const NOTES: usize = 1_000;
 /// A half-sent command is forgotten after this; real cards take 100 ms, which would be seconds of simulation.
 const LINK_TIMEOUT_US: u64 = 5_000;
 /// Waits of the initialisation, for the same reason; real ones add up to 1.9 s.
@@ -303,6 +305,7 @@ impl VirtualCard {
     ) -> Self {
         let cycles_per_us = (bench.system_hz() / 1_000_000).max(1);
         bench.power_up();
+        bench.keep(NOTES);
         Self {
             others,
             is_spoilt: false,
@@ -388,6 +391,11 @@ impl Transport for VirtualCard {
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.host.send(bytes, self.bench.cycle());
         Ok(())
+    }
+
+    /// Its own time: however long its simulation takes, no answer is late.
+    fn elapsed(&self) -> Duration {
+        Duration::from_nanos(self.bench.now() / 1_000)
     }
 
     /// A wait is simulated time; waits of a host that would be long are cut, since this card has shorter ones itself.

@@ -88,6 +88,12 @@ impl Link {
         &mut self.encoder
     }
 
+    /// Notes only so many frames, violations and conflicts, the last ones.
+    pub fn keep(&mut self, most: usize) {
+        self.encoder.keep(most);
+        self.line.keep(most);
+    }
+
     /// From now on every change is kept.
     pub fn record(&mut self) {
         self.trace = Some(LinkTrace::default());

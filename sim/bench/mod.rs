@@ -272,6 +272,12 @@ impl<E: Engine> Bench<E> {
         self.ports.len()
     }
 
+    /// Links and encoders note only so much of each kind, the last entries: for a bench that runs for days.
+    pub fn keep(&mut self, most: usize) {
+        self.ports.iter_mut().for_each(|port| port.link.keep(most));
+        (0..self.others.len()).for_each(|n| self.other_mut(n).keep(most));
+    }
+
     /// What encoder `index` noted about its frames.
     pub fn frames(&self, index: usize) -> &[FrameLog] {
         self.link(index).encoder().frames()

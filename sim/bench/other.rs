@@ -27,6 +27,9 @@ pub trait OtherEncoder: Any + Send {
     /// What the receiver has done wrong, in words.
     fn complaints(&self) -> Vec<String>;
 
+    /// Notes only so much of each kind, the last entries.
+    fn keep(&mut self, most: usize);
+
     /// Itself, for who knows which it is.
     fn as_any(&self) -> &dyn Any;
 

@@ -166,6 +166,10 @@ impl OtherEncoder for TFormatLink {
         self.trace.as_deref().unwrap_or_default()
     }
 
+    fn keep(&mut self, most: usize) {
+        self.encoder.keep(most);
+    }
+
     fn complaints(&self) -> Vec<String> {
         let violations = self.encoder.violations().iter();
         violations.map(ToString::to_string).collect()

@@ -72,8 +72,8 @@ impl Encoder {
         match code {
             0x41 if self.memory.word(area::OPERATING_PARAMETERS, 3) == 0 => 0,
             0x41 => {
-                let turn = self.frames.len().checked_rem(values.diagnostics.len());
-                turn.map_or(0, |turn| values.diagnostics[turn])
+                let turn = (self.frames.count()).checked_rem(values.diagnostics.len() as u64);
+                turn.map_or(0, |turn| values.diagnostics[turn as usize])
             }
             0x42..=0x44 => {
                 if code == 0x42 {

@@ -226,7 +226,7 @@ impl Encoder {
     /// Takes a position and draws what is random in its frame.
     pub(super) fn new_frame(&mut self, time: Time) {
         self.settle(time);
-        let index = self.frames.len() as u64;
+        let index = self.frames.count();
         let defects = self.config.defects_of(index);
         let mut tcal = self.config.tcal + self.rng.in_range(0, self.config.tcal_jitter);
         let short = self

@@ -53,7 +53,7 @@ pub use memory::{area, status_word};
 pub use status::ErrorSource;
 pub use violation::Violation;
 
-use crate::{rng::Rng, Time};
+use crate::{rng::Rng, Journal, Time};
 use infos::{Parts, Selection};
 use memory::Memory;
 use status::Status;
@@ -234,8 +234,8 @@ pub struct Encoder {
     job: Option<(Time, jobs::Work)>,
     /// When the clock will have kept its level for too long.
     watchdog: Option<Time>,
-    frames: Vec<FrameLog>,
-    violations: Vec<(Time, Violation)>,
+    frames: Journal<FrameLog>,
+    violations: Journal<(Time, Violation)>,
 }
 
 impl Encoder {
@@ -265,8 +265,8 @@ impl Encoder {
             parts: Parts::default(),
             job: None,
             watchdog: None,
-            frames: Vec::new(),
-            violations: Vec::new(),
+            frames: Journal::default(),
+            violations: Journal::default(),
             config,
         }
     }
@@ -285,7 +285,7 @@ impl Encoder {
 
     /// A defect of the frame that comes next.
     pub fn spoil_next(&mut self, defect: Defect) {
-        let frame = self.frames.len() as u64;
+        let frame = self.frames.count();
         self.config.defects.push((frame..=frame, defect));
     }
 
@@ -294,7 +294,7 @@ impl Encoder {
         let kind = std::mem::discriminant(&defect);
         let defects = &mut self.config.defects;
         defects.retain(|(_, other)| std::mem::discriminant(other) != kind);
-        let first = self.frames.len() as u64;
+        let first = self.frames.count();
         let last = first.saturating_add(frames.saturating_sub(1));
         self.config.defects.push((first..=last, defect));
     }
@@ -320,6 +320,12 @@ impl Encoder {
     /// Its type plate.
     pub fn config(&self) -> &EncoderConfig {
         &self.config
+    }
+
+    /// Notes only so many frames and violations, the last ones: an encoder that runs for days.
+    pub fn keep(&mut self, most: usize) {
+        self.frames.keep(most);
+        self.violations.keep(most);
     }
 
     /// The frames so far.

@@ -22,7 +22,7 @@ pub use seen::{Arrival, Conflict, DataChange, End, Sample, Who};
 use crate::{
     encoder::{Drive, Output},
     rng::Rng,
-    Time,
+    Journal, Time,
 };
 use path::Path;
 use std::collections::VecDeque;
@@ -48,7 +48,7 @@ pub struct Line {
     glitch: Option<(Wire, Time)>,
     rng: Rng,
     history: VecDeque<DataChange>,
-    conflicts: Vec<Conflict>,
+    conflicts: Journal<Conflict>,
     open_conflicts: [Option<Conflict>; 2],
 }
 
@@ -78,7 +78,7 @@ impl Line {
             glitch: None,
             rng,
             history: VecDeque::new(),
-            conflicts: Vec::new(),
+            conflicts: Journal::default(),
             open_conflicts: [None; 2],
             config,
         };
@@ -250,6 +250,11 @@ impl Line {
             (Drive::Released, remote) => remote != Drive::Low,
             (local, _) => local == Drive::High,
         }
+    }
+
+    /// Notes only so many conflicts, the last ones.
+    pub fn keep(&mut self, most: usize) {
+        self.conflicts.keep(most);
     }
 
     /// The conflicts so far, the unfinished ones as if they ended at `now`.

@@ -133,6 +133,10 @@ impl OtherEncoder for SsiLink {
         &[]
     }
 
+    fn keep(&mut self, most: usize) {
+        self.encoder.keep(most);
+    }
+
     fn complaints(&self) -> Vec<String> {
         let violations = self.encoder.violations().iter();
         violations.map(ToString::to_string).collect()

@@ -19,7 +19,7 @@ mod violation;
 pub use link::{SsiLink, SsiMotion};
 pub use violation::Violation;
 
-use crate::{rng::Rng, Time, NS, US};
+use crate::{rng::Rng, Journal, Time, NS, US};
 use std::collections::VecDeque;
 
 /// An encoder and its moment.
@@ -120,7 +120,7 @@ pub struct Encoder {
     data: bool,
     ready: Option<Time>,
     frames: u64,
-    violations: Vec<Violation>,
+    violations: Journal<Violation>,
 }
 
 impl Encoder {
@@ -138,7 +138,7 @@ impl Encoder {
             data: true,
             ready: None,
             frames: 0,
-            violations: vec![],
+            violations: Journal::default(),
         }
     }
 
@@ -149,6 +149,11 @@ impl Encoder {
             Defect::Silent => true,
             _ => self.data,
         }
+    }
+
+    /// Notes only so many violations, the last ones.
+    pub fn keep(&mut self, most: usize) {
+        self.violations.keep(most);
     }
 
     /// Whole frames; a position that comes twice is one.

@@ -21,7 +21,7 @@ pub use config::{Defect, EncoderConfig};
 pub use violation::Violation;
 pub use wire::{edges, Wire};
 
-use crate::{encoder::Drive, rng::Rng, Time};
+use crate::{encoder::Drive, rng::Rng, Journal, Time};
 use memory::Eeprom;
 use std::collections::VecDeque;
 
@@ -65,9 +65,9 @@ pub struct Encoder {
     /// Where its positions are told from.
     zero: (u32, u32),
     eeprom: Eeprom,
-    violations: Vec<Violation>,
-    requests: Vec<Vec<u8>>,
-    replies: Vec<Vec<u8>>,
+    violations: Journal<Violation>,
+    requests: Journal<Vec<u8>>,
+    replies: Journal<Vec<u8>>,
 }
 
 impl Encoder {
@@ -87,9 +87,9 @@ impl Encoder {
             ended: None,
             resets: (0, 0),
             zero: (0, 0),
-            violations: vec![],
-            requests: vec![],
-            replies: vec![],
+            violations: Journal::default(),
+            requests: Journal::default(),
+            replies: Journal::default(),
         }
     }
 
@@ -99,6 +99,18 @@ impl Encoder {
             Defect::StuckLow => Drive::Low,
             _ => self.output,
         }
+    }
+
+    /// Notes only so many requests, replies and violations, the last ones.
+    pub fn keep(&mut self, most: usize) {
+        self.violations.keep(most);
+        self.requests.keep(most);
+        self.replies.keep(most);
+    }
+
+    /// How many whole requests have come.
+    pub fn request_count(&self) -> u64 {
+        self.requests.count()
     }
 
     /// What the receiver has done wrong.

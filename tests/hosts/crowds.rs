@@ -301,6 +301,12 @@ fn a_card_keeps_no_more_than_it_can_carry_out() {
     a_card_beside_crowds(Duration::from_millis(3_000));
 }
 
+#[test]
+#[ignore = "slow: ten minutes of a card beside a client that floods and 200 connections"]
+fn a_card_keeps_no_more_than_it_can_carry_out_for_ten_minutes() {
+    a_card_beside_crowds(Duration::from_secs(600));
+}
+
 /// Catches a connection that says nothing and has the card all the same.
 #[test]
 fn a_connection_that_says_nothing_keeps_nobody_out() {

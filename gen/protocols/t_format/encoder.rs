@@ -105,7 +105,7 @@ impl OtherFaults for Faults {
 
     fn make(&mut self, encoder: &mut dyn OtherEncoder, deed: Deed) -> Option<()> {
         let link = link(encoder);
-        let until = |replies| Some(link.encoder().requests().len() as u64 + replies);
+        let until = |replies| Some(link.encoder().request_count() + replies);
         let (ends, defect) = match deed {
             // Of a position: only the CRC tells.
             Deed::Spoil(replies, Wanted::CrcXor(_)) => {
@@ -122,7 +122,7 @@ impl OtherFaults for Faults {
 
     fn mend(&mut self, encoder: &mut dyn OtherEncoder) -> bool {
         let encoder = link(encoder).encoder_mut();
-        if self.spoilt.ends_at(encoder.requests().len() as u64) {
+        if self.spoilt.ends_at(encoder.request_count()) {
             encoder.config.defect = Defect::None;
         }
         self.spoilt.goes_on()
