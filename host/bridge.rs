@@ -7,7 +7,7 @@ use crate::stream::{Decoder, SampleSet};
 use crate::transport::Transport;
 use crate::HostError;
 use std::collections::VecDeque;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Most words in one command.
 pub const WORDS_MAX: usize = 255;
@@ -188,9 +188,9 @@ impl<T: Transport> Bridge<T> {
                 return Ok(None);
             }
             self.send(&[2, count as u8, 0, 0, 0, 0])?;
-            let end = Instant::now() + self.wait;
-            while self.inbox.len() < 4 * count && Instant::now() < end {
-                self.fill(end.saturating_duration_since(Instant::now()))?;
+            let end = self.transport.elapsed() + self.wait;
+            while self.inbox.len() < 4 * count && self.transport.elapsed() < end {
+                self.fill(end.saturating_sub(self.transport.elapsed()))?;
             }
             let bytes: Vec<u8> = self.inbox.iter().copied().take(4 * count).collect();
             let found = words(&bytes);
@@ -225,11 +225,13 @@ impl<T: Transport> Bridge<T> {
 
     /// Waits until the card has forgotten what was sent to it, and nothing comes any more, or nothing but whole frames where it pushes.
     fn settle(&mut self) -> Result<(), HostError> {
-        let end = Instant::now() + SETTLE_MAX;
-        let mut quiet_since = Instant::now();
+        let mut quiet_since = self.transport.elapsed();
+        let end = quiet_since + SETTLE_MAX;
         let mut damaged = self.decoder.damaged();
-        while quiet_since.elapsed() < FORGET && Instant::now() < end {
+        let mut now = quiet_since;
+        while now - quiet_since < FORGET && now < end {
             self.fill(FORGET)?;
+            now = self.transport.elapsed();
             let mut is_noisy = !self.pushes && !self.inbox.is_empty();
             while let Some(byte) = self.inbox.pop_front() {
                 if self.pushes {
@@ -240,7 +242,7 @@ impl<T: Transport> Bridge<T> {
             is_noisy |= self.decoder.damaged() != damaged;
             damaged = self.decoder.damaged();
             if is_noisy {
-                quiet_since = Instant::now();
+                quiet_since = now;
             }
         }
         Ok(())
@@ -267,13 +269,13 @@ impl<T: Transport> Bridge<T> {
     }
 
     fn answer(&mut self, count: usize) -> Result<Option<Vec<u8>>, HostError> {
-        let end = Instant::now() + self.wait;
+        let end = self.transport.elapsed() + self.wait;
         let mut bytes = Vec::with_capacity(count);
         let mut has_begun = !self.pushes;
         while bytes.len() < count {
             let Some(byte) = self.inbox.pop_front() else {
-                let left = end.saturating_duration_since(Instant::now());
-                if self.fill(left)? == 0 && Instant::now() >= end {
+                let left = end.saturating_sub(self.transport.elapsed());
+                if self.fill(left)? == 0 && self.transport.elapsed() >= end {
                     return Ok(None);
                 }
                 continue;
@@ -303,5 +305,52 @@ fn lost(error: std::io::Error) -> HostError {
         action: "lost",
         error,
         remedy: "is the card still plugged in?",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io;
+    use std::thread::sleep;
+
+    /// A card whose time runs a tenth as fast as ours; each byte of its answer takes a millisecond of it.
+    struct Slow {
+        time: Duration,
+        answer: VecDeque<u8>,
+    }
+
+    impl Transport for Slow {
+        fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+            self.answer.extend(&bytes[2..6]);
+            Ok(())
+        }
+
+        fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+            if wait.is_zero() {
+                return Ok(0);
+            }
+            let step = wait.min(Duration::from_millis(1));
+            sleep(10 * step);
+            self.time += step;
+            let byte = self.answer.pop_front();
+            buffer[0] = byte.unwrap_or(0);
+            Ok(byte.is_some().into())
+        }
+
+        fn elapsed(&self) -> Duration {
+            self.time
+        }
+    }
+
+    #[test]
+    fn answers_are_waited_for_in_the_card_s_own_time() {
+        let mut bridge = Bridge::new(Slow {
+            time: Duration::ZERO,
+            answer: VecDeque::new(),
+        });
+        bridge.set_wait(Duration::from_millis(20));
+        assert_eq!(bridge.read(7, 1).unwrap(), [7]);
+        assert_eq!(bridge.retries(), 0);
     }
 }

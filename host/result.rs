@@ -69,6 +69,7 @@ mod tests {
             Reading {
                 sequence: 2,
                 cause: 0,
+                flags: 0,
                 valid: true,
                 fresh: true,
                 position: 0x9_0123_5678,

@@ -3,6 +3,7 @@
 use crate::HostError;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 /// A link of bytes.
@@ -12,6 +13,12 @@ pub trait Transport {
 
     /// Waits at most `wait` for bytes, and returns how many came: 0 = none. With a wait of zero, what is there already.
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
+
+    /// How its time runs, from any beginning: an answer is waited for in it. That of a simulated card may be slower than ours.
+    fn elapsed(&self) -> Duration {
+        static BEGIN: OnceLock<Instant> = OnceLock::new();
+        BEGIN.get_or_init(Instant::now).elapsed()
+    }
 
     /// Whether it is there now, and how often it was lost before.
     fn state(&self) -> LinkState {
@@ -52,6 +59,10 @@ impl<T: Transport + ?Sized> Transport for Box<T> {
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         (**self).receive(buffer, wait)
+    }
+
+    fn elapsed(&self) -> Duration {
+        (**self).elapsed()
     }
 
     fn state(&self) -> LinkState {
