@@ -4,12 +4,15 @@ use crate::facts::Facts;
 use crate::frame::crc5;
 use crate::map::field;
 use endat_regs::causes::{self, endat};
-use endat_regs::{Field, Part, Protocol, Protocols, BLOCK_STRIDE, CHANNELS_MAX, RESULT};
+use endat_regs::{Field, Part, Protocol, Protocols, Values, BLOCK_STRIDE, CHANNELS_MAX, RESULT};
 
 /// Words of a result, those of additional data included.
 pub const RESULT_WORDS: usize = RESULT.registers.len();
 /// Words of the longest burst that reads all results.
 pub const MOMENT_WORDS: usize = BLOCK_STRIDE as usize * CHANNELS_MAX;
+
+/// Where the raw flags are, from the first one on.
+const FLAGS: [&Field; 2] = [field!(RESULT.evidence.flags), field!(RESULT.status.line)];
 
 /// A block of additional data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,6 +92,8 @@ pub struct Reading {
     pub recovery_cycles: u16,
     /// Primary cause, a number of [`causes::ALL`]; 0 = none.
     pub cause: u8,
+    /// Everything that was wrong with the frame, a bit for each: see [`Self::flag_names`].
+    pub flags: u32,
     /// There is a good position.
     pub valid: bool,
     /// The last result brought it: test this, not the cause.
@@ -124,6 +129,7 @@ impl Reading {
             delay_cycles: (delay_high << delay_low.width | delay_low.of(evidence)) as u16,
             recovery_cycles: field!(RESULT.age_recovery.recovery_cycles).of(age) as u16,
             cause: causes::number(field!(RESULT.status.cause).of(status) as u8, protocol),
+            flags: FLAGS[0].of(evidence) | FLAGS[1].of(status) << FLAGS[0].width,
             valid: is(status, field!(RESULT.status.valid)),
             fresh: is(status, field!(RESULT.status.fresh)),
             stale: is(age, field!(RESULT.age_recovery.stale)),
@@ -157,6 +163,20 @@ impl Reading {
     /// Name of the primary cause.
     pub fn cause_name(&self) -> &'static str {
         causes::of(self.cause).map_or("unknown", |cause| cause.name)
+    }
+
+    /// Names of all that was wrong with the frame, in a channel that speaks this protocol; the primary cause is one of them.
+    pub fn flag_names(&self, protocol: Protocol) -> impl Iterator<Item = &'static str> {
+        let [beside, above] = [self.flags, self.flags >> FLAGS[0].width];
+        let fields = FLAGS.into_iter().zip([beside, above]);
+        fields.flat_map(move |(field, flags)| {
+            let named = match field.values_in(protocol) {
+                Values::Bits(named) => named,
+                Values::Plain | Values::Codes(_) => &[],
+            };
+            let set = named.iter().filter(move |bit| flags >> bit.number & 1 != 0);
+            set.map(|bit| bit.name)
+        })
     }
 
     /// What the cause means.

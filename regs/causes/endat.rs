@@ -26,8 +26,8 @@ super::cause::causes! {
         "The encoder reports an alarm in F2, found independently of F1.",
         "As for f1.";
     DATA_NOT_FALLING = 7, "data_not_falling", "data not falling after the frame";
-        "DATA stayed HIGH after the frame: the encoder has more bits than configured, or a recovery time longer than recovery_max_ns.",
-        "Compare position_bits and recovery_max_ns with the data sheet.";
+        "DATA stayed HIGH after the frame for longer than recovery_max_ns: the encoder has more bits than configured, or a longer recovery time. With the flag tail_low DATA was LOW a clock after the CRC instead: the encoder has another width, or does not hold DATA HIGH for its recovery time. A wrong CRC and alarms of the same frame stand in its flags.",
+        "Compare position_bits and recovery_max_ns with the data sheet. An encoder that ends its frame LOW is none of EnDat.";
     TRIGGER_OVERRUN = 8, "trigger_overrun", "trigger overrun";
         "A trigger came while a frame or a T-format exchange was under way; its position is good.",
         "Trigger more slowly: `explain` shows the highest rate.";

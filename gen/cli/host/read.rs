@@ -7,7 +7,7 @@ use clap::Args;
 use endat_driver::Reading;
 use endat_host::causes;
 use endat_host::units::Scale;
-use endat_regs::Part;
+use endat_regs::{Part, Protocol};
 use serde_json::{json, Value};
 use std::fmt::Write;
 
@@ -86,6 +86,16 @@ pub fn verdict(reading: &Reading) -> String {
     }
 }
 
+/// What else was wrong with the frame of a channel that speaks this protocol: the primary cause hides it.
+fn also(reading: &Reading, protocol: Protocol) -> String {
+    let others = reading.flag_names(protocol);
+    let others: Vec<_> = others.filter(|f| *f != reading.cause_name()).collect();
+    match others[..] {
+        [] => String::new(),
+        _ => format!(", also {}", others.join(", ")),
+    }
+}
+
 /// The same with its colour.
 fn painted_verdict(reading: &Reading) -> String {
     let told = verdict(reading);
@@ -123,6 +133,8 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
             object["sequence"] = r.sequence.into();
             object["timestamp_s"] = (f64::from(r.timestamp) / system_hz).into();
             object["stale"] = r.stale.into();
+            let flags = r.flag_names(card.identity().protocol(channel));
+            object["flags"] = flags.collect::<Vec<_>>().into();
             object["delay_cycles"] = r.delay_cycles.into();
             for (n, info) in r.infos.iter().enumerate().filter(|_| has_infos) {
                 let good = info.good();
@@ -145,10 +157,11 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
             };
             let _ = writeln!(
                 text,
-                "{channel:>7}  {:<24} {raw:>16}  {:>9}  {}",
+                "{channel:>7}  {:<24} {raw:>16}  {:>9}  {}{}",
                 shown(r, scale),
                 r.age_us,
-                painted_verdict(r)
+                painted_verdict(r),
+                also(r, card.identity().protocol(channel)),
             );
         }
         text
@@ -163,6 +176,8 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use endat_regs::causes::endat;
+    use endat_regs::RESULT;
 
     #[test]
     fn a_result_of_long_ago_is_not_called_good() {
@@ -177,6 +192,34 @@ mod tests {
         assert_eq!(why_old(&at(65_534)), None);
         let old = why_old(&at(65_535)).unwrap();
         assert!(old.contains("is a trigger enabled"), "{old}");
+    }
+
+    /// Catches a wrong CRC and an alarm that nobody is told of, since the frame had another length, too.
+    #[test]
+    fn what_the_primary_cause_hides_is_told() {
+        let field = |name| RESULT.field("evidence", name).lsb;
+        let flags = 1 << endat::flag::TAIL_LOW.trailing_zeros() | 1 << 3 | 1 << 4;
+        let line = RESULT.field("status", "line");
+        let words = [
+            1 | 7 << 16 | 1 << line.lsb + line.width - 1,
+            0,
+            0,
+            0,
+            flags << field("flags"),
+            0,
+        ];
+        let reading = Reading::new(&words, Protocol::Endat);
+        let told = format!("{}{}", verdict(&reading), also(&reading, Protocol::Endat));
+        assert_eq!(
+            told,
+            "none: data_not_falling, also crc, f1, tail_low, upset"
+        );
+        let ssi = Reading::new(
+            &[1 | 2 << 16, 0, 0, 0, 0b1010 << field("flags"), 0],
+            Protocol::Ssi,
+        );
+        let told = format!("{}{}", verdict(&ssi), also(&ssi, Protocol::Ssi));
+        assert_eq!(told, "none: data_not_high, also position_parity");
     }
 
     /// Catches a search for a trigger where the encoder has an alarm.
