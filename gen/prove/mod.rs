@@ -9,6 +9,7 @@
 //! The properties of a part of a card are proved together: each may lean on the others in the cycles before.
 
 pub mod frames;
+mod fronts;
 mod harness;
 mod netlist;
 mod page;
@@ -17,8 +18,9 @@ pub mod reset;
 mod tools;
 mod trace;
 
+pub use fronts::claimed;
 pub use page::page;
-pub use report::{PartReport, Report, Row, Verdict};
+pub use report::{ModuleRow, PartReport, Report, Row, Verdict};
 pub(crate) use tools::YOSYS;
 pub use trace::Trace;
 
@@ -62,6 +64,9 @@ const ANYWHERE_CYCLES: usize = 3;
 
 /// How far a counterexample is looked for where the induction finds none that begins at the start values.
 const SEARCH_CYCLES: usize = 12;
+
+/// What the inputs of a part may be, unless a claim says less.
+const ANYTHING: &str = "every input may be anything in every cycle";
 
 /// What is proved.
 #[derive(Clone)]
@@ -124,7 +129,8 @@ fn parts(design: &Design) -> Vec<usize> {
     let ports: BTreeSet<&str> = types
         .filter(|name| name.ends_with("Port") && *name != ENCODER_PORT)
         .collect();
-    for part in ports.into_iter().chain(PARTS) {
+    let claimed = fronts::CLAIMS.iter().map(|claim| claim.type_name);
+    for part in ports.into_iter().chain(PARTS).chain(claimed) {
         for (index, module) in design.modules.iter().enumerate() {
             if module.type_name == part && !inside.contains(&index) {
                 parts.push(index);
@@ -153,11 +159,29 @@ pub fn prove(
         parts.push(prove_part(subject, part, traces)?);
     }
     let provers = tools::versions()?;
+    let modules = modules(subject, &parts);
     Ok(Report {
         name: subject.name.clone(),
         provers,
         parts,
+        modules,
     })
+}
+
+/// Every module of a card, with the part that it is proved in and how many properties it has.
+fn modules(subject: &Subject, reports: &[PartReport]) -> Vec<ModuleRow> {
+    let design = &subject.design;
+    let rows: Vec<&Row> = reports.iter().flat_map(|part| &part.rows).collect();
+    let row = |(index, module): (usize, &Module)| {
+        let is_in = |part: &&usize| below(design, **part).contains(&index);
+        let part = subject.parts.iter().find(is_in);
+        ModuleRow {
+            module: module.name.clone(),
+            part: part.map(|part| design.modules[*part].name.clone()),
+            properties: rows.iter().filter(|r| r.module == module.name).count(),
+        }
+    };
+    design.modules.iter().enumerate().map(row).collect()
 }
 
 fn prove_part(
@@ -180,8 +204,13 @@ fn prove_part(
     let mut files = subject.files.clone();
     files.push(harness::artifact(module, design.has_initial_values));
     crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
+    let claim = fronts::claim_of(module);
     let mut report = PartReport {
         module: module.name.clone(),
+        inputs: match claim {
+            Some(claim) if blocks.is_empty() => claim.inputs,
+            _ => ANYTHING,
+        },
         start_seconds: 0.0,
         anywhere_seconds: 0.0,
         rows: vec![],
@@ -222,6 +251,12 @@ fn prove_part(
             )?;
         }
         report.rows.append(&mut rows);
+    }
+    if let Some(claim) = claim {
+        let started = Instant::now();
+        let mut rows = claim.rows(design, &subject.files, top, folder.path())?;
+        report.rows.append(&mut rows);
+        report.start_seconds += started.elapsed().as_secs_f64();
     }
     // Elsewhere are words behind a valid bit, without a reset of their own, and bytes out of memories.
     if module.type_name != CHANNEL {
@@ -300,14 +335,23 @@ pub(crate) fn refutes(
         ));
         crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
         files.retain(|file| file.path != own);
-        let proof = Proof {
-            folder: folder.path(),
-            files: &files,
-            begins: Begins::AtStart,
-            has_initial_values: design.has_initial_values,
-            first,
-        };
-        found = Some(!proof.run()?.failed.is_empty());
+        let has_properties = |index: usize| !design.modules[index].properties.is_empty();
+        if below(design, part).into_iter().any(has_properties) {
+            let proof = Proof {
+                folder: folder.path(),
+                files: &files,
+                begins: Begins::AtStart,
+                has_initial_values: design.has_initial_values,
+                first,
+            };
+            found = Some(!proof.run()?.failed.is_empty());
+        }
+        if let (false, Some(claim)) = (found == Some(true), fronts::claim_of(&design.modules[part]))
+        {
+            files.retain(|file| !file.path.ends_with(".sv"));
+            let answer = claim.ask(design, &files, part, folder.path(), first)?;
+            found = Some(!answer.failed.is_empty());
+        }
         if found == Some(true) {
             break;
         }

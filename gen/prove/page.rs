@@ -1,7 +1,8 @@
 //! `docs/proofs.md`: what is proved, and how long it took.
 
 use super::frames::FrameReport;
-use super::{Report, Row};
+use super::{claimed, Report, Row};
+use rtl_design::elaborate::block_name;
 use std::fmt::Write;
 
 const HEAD: &str = "# Proofs
@@ -20,7 +21,11 @@ The properties stand at the end of their modules below `` `ifdef FORMAL ``, so o
 reset, and all settings, legal or not. *From the start values* means: after configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any
 state* means: whatever the registers hold, for instance after an upset. The properties of a part are proved together, so one may lean on another in the cycles before. `known_after_reset` stands in no module: it is looked at in the gates of a channel as it is synthesised. That the cause is the one of the highest rank, whatever happened at once, is proved by the suite, for all flags (`tests/verilog/formal.rs`).
 
-**What it does not say.** The bus fronts are proved in the suite (`tests/verilog/fronts.rs`); services, line monitor, direct outputs, recovery counter, second interface and interrupt are simulated only. A frame that carries
+The front of AXI4-Lite, APB, Wishbone or AHB-Lite is proved for every master within the rules of its bus, with a bank that answers each access within four cycles; `holds_inside` is what the induction needs of the blocks inside it.
+
+The last table of the command has every module of your card, with its properties or with *none*.
+
+**What it does not say.** What stands in that table without a part is simulated only: services, line monitor, direct outputs, recovery counter, second interface, interrupt, trigger timers, the fronts of SPI and of the parallel bus. A frame that carries
 a request, additional data or a supplement, and a clock that goes on, are outside `crc_as_received`, `error_bits_as_received` and `bits_counted`; `forward_only`, `phases_are_timed` and
 `phases_end` are about channels without requests, diagnosis and continuous clock, `one_result_per_trigger` about those without requests and continuous clock. `crc16_as_sent` takes for
 granted that a byte of a set, once it is there, stays until it has been written, as the port says. `first_word_as_sent` is about the first word of a command, while no access of an earlier one
@@ -80,6 +85,17 @@ pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
                 listed.push(&row.name);
                 let block = block(&report.name, &row.module);
                 let _ = writeln!(out, "| `{}` | `{block}` | {} |", row.name, row.words);
+            }
+        }
+        // Of buses that no preset has.
+        for (block, properties) in claimed().into_iter().filter(|_| !any) {
+            for property in properties {
+                let name = property.name.as_str();
+                if !out.contains(&format!("| `{name}` |")) {
+                    let block = block_name("", block);
+                    let block = block.trim_start_matches('_');
+                    let _ = writeln!(out, "| `{name}` | `{block}` | {} |", property.words);
+                }
             }
         }
     }

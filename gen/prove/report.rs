@@ -66,12 +66,40 @@ pub struct Row {
 pub struct PartReport {
     /// Its module.
     pub module: String,
+    /// What its inputs may be.
+    pub inputs: &'static str,
     /// Time for the properties that begin with the start values.
     pub start_seconds: f64,
     /// Time for those of any state.
     pub anywhere_seconds: f64,
     /// Its properties.
     pub rows: Vec<Row>,
+}
+
+/// A module of a card.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModuleRow {
+    /// Its name.
+    pub module: String,
+    /// The part that it is proved in; none: it is simulated only.
+    pub part: Option<String>,
+    /// Properties that it has.
+    pub properties: usize,
+}
+
+impl fmt::Display for ModuleRow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = match self.properties {
+            0 => "none".into(),
+            count => count.to_string(),
+        };
+        let part = match &self.part {
+            Some(part) if *part == self.module => "a part",
+            Some(part) => part,
+            None => "no part: simulated only",
+        };
+        write!(f, "{:<44} {count:>10}  {part}", self.module)
+    }
 }
 
 /// A card.
@@ -83,6 +111,8 @@ pub struct Report {
     pub provers: String,
     /// Its parts; those that are alike once.
     pub parts: Vec<PartReport>,
+    /// Every module of it.
+    pub modules: Vec<ModuleRow>,
 }
 
 impl Report {
@@ -134,11 +164,7 @@ pub(super) fn rows(blocks: &[Block], begins: Begins, answer: &Answer) -> Vec<Row
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for part in &self.parts {
-            writeln!(
-                f,
-                "{}: every input may be anything in every cycle",
-                part.module
-            )?;
+            writeln!(f, "{}: {}", part.module, part.inputs)?;
             for (any, from, seconds) in [
                 (false, "the start values, without bound", part.start_seconds),
                 (true, "any contents of the registers", part.anywhere_seconds),
@@ -161,6 +187,10 @@ impl fmt::Display for Report {
             }
             writeln!(f)?;
         }
-        writeln!(f, "{}", self.provers)
+        writeln!(f, "{:<44} {:>10}  proved in", "module", "properties")?;
+        for module in &self.modules {
+            writeln!(f, "{module}")?;
+        }
+        writeln!(f, "\n{}", self.provers)
     }
 }

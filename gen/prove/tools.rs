@@ -79,6 +79,52 @@ pub(super) fn not_read(text: &str) -> GenError {
     ))
 }
 
+/// A module with all that it holds, as one text; registers begin as told. `first` is what yosys does before it reads the files.
+pub(super) fn flat(
+    folder: &Path,
+    files: &[&str],
+    top: &str,
+    first: &str,
+    starts: &[(String, usize, u128)],
+) -> Result<String, GenError> {
+    let begin = |(path, bits, value): &(String, usize, u128)| {
+        format!("setattr -set init {bits}'b{value:0bits$b} w:{path}; ")
+    };
+    let starts: String = starts.iter().map(begin).collect();
+    let file = "flat.v";
+    let script = format!(
+        "{first}read_verilog {}; hierarchy -top {top}; proc; flatten; opt_clean; {starts}write_verilog -noattr {file}",
+        files.join(" ")
+    );
+    let (is_good, text) = run(YOSYS, folder, &["-q", "-p", &script])?;
+    if !is_good {
+        return Err(not_read(&text));
+    }
+    let path = folder.join(file);
+    std::fs::read_to_string(&path)
+        .map_err(|e| GenError::io("read", &path, &e, crate::scratch::REMEDY))
+}
+
+/// Makes the model of such a module with these claims at its end; the name of its file.
+pub(super) fn claims(
+    folder: &Path,
+    flat: &str,
+    top: &str,
+    claims: &str,
+) -> Result<String, GenError> {
+    let (head, tail) = flat.rsplit_once("endmodule").unwrap_or((flat, ""));
+    let text = format!("{head}{claims}endmodule{tail}");
+    let remedy = crate::scratch::REMEDY;
+    crate::artifact::write(folder, &[Artifact::new("claim.v", text)], remedy)?;
+    let script = format!(
+        "read_verilog -formal claim.v; prep -top {top}; async2sync; dffunmap; chformal -lower; opt_clean; write_smt2 -wires claim.smt2"
+    );
+    match run(YOSYS, folder, &["-q", "-p", &script])? {
+        (true, _) => Ok("claim.smt2".into()),
+        (false, text) => Err(not_read(&text)),
+    }
+}
+
 /// Asks about a model.
 pub(super) fn solve(folder: &Path, model: &str, options: &[&str]) -> Result<Answer, GenError> {
     let common = ["-s", SOLVER, "--noprogress", "--dump-vcd", TRACE];

@@ -3,7 +3,6 @@
 pub mod area;
 mod bus_bench;
 mod formal;
-mod fronts;
 mod lint;
 pub mod mutations;
 pub mod netlist;

@@ -1,3 +1,5 @@
+// ready_without_a_transfer: Without a transfer the subordinate is ready, and there is no error.
+// error_has_two_cycles: An error takes two cycles, the first of them not ready.
     // A master within the rules: `hready` is the answer of whose data phase it is, or HIGH where this subordinate is alone.
     // The transfer is the data phase, with what its address phase said.
     reg p_on = 0, p_answer = 0, p_error = 0, p_held = 0, p_writes = 0, p_refused = 0;

@@ -1,3 +1,4 @@
+// one_answer: ACK and ERR never come together.
     // A master within the rules; it may leave at any time, with a cycle before the next transfer.
     wire t_held = cyc & stb;
     wire t_on = cyc & stb;

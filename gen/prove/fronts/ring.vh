@@ -1,6 +1,8 @@
+// ring_is_home: Between accesses the ring of configuration words is where it was.
+// begins_at_home: An access begins with the ring at home, whatever the front says.
     // Everything that a front can say is free, and changes in every cycle. Bytes that the ring has moved on, up to a whole turn.
     reg [8:0] f_steps = 0;
-    localparam [8:0] WHOLE = 24;
+    localparam [8:0] WHOLE = 12 * BLOCKS;
     wire [8:0] f_next = f_steps + ring_turn;
     wire [8:0] f_counted = 12 * block_at + byte_at;
     always @* assume (!reset);
@@ -12,7 +14,7 @@
     end
     // What holds between front, word and bank in every state that can be reached; the counters run one step ahead of the ring.
     always @* begin
-        place_is_real: assert (byte_at <= 11 && (block_at <= 1 || !turning));
+        place_is_real: assert (byte_at <= 11 && (block_at < BLOCKS || !turning));
         if (turning && whole_turn) begin place_is_known: assert (f_next == f_counted); end
         else begin home_otherwise: assert (f_next == 0 || f_next == WHOLE); end
         if (!turning && f_next == 0) begin at_rest: assert (f_steps == 0); end

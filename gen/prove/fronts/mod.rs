@@ -1,0 +1,235 @@
+//! Proofs of bus fronts, for every master within the rules of its bus and for ever, and of the ring of configuration words, for every front.
+//!
+//! These proofs look into the blocks inside a module: they are put into the module after yosys has made it flat. Each text has what is
+//! promised first; from [`INSIDE`] on it has what holds between front, word and bank, which the induction needs.
+
+use super::report::{Row, Verdict};
+use super::tools::{self, Answer};
+use crate::artifact::Artifact;
+use crate::error::GenError;
+use rtl_design::elaborate::properties::{of_label, properties, Property};
+use rtl_design::elaborate::{Design, Module};
+use std::path::Path;
+
+/// From here on a text says what holds between the blocks inside.
+const INSIDE: &str = "    // What holds between front, word and bank";
+/// The property that all assertions inside are of.
+const INSIDE_NAME: &str = "holds_inside";
+/// Its words.
+const INSIDE_WORDS: &str =
+    "What front, word and bank hold fits together in every cycle; the others lean on it.";
+/// Cycles that a step of the induction looks back over, and that its base has.
+const DEPTH: usize = 5;
+/// The same for waits: deeper than the longest one.
+const WAIT_DEPTH: usize = 66;
+/// How far a run that breaks a promise is looked for.
+const SEARCH_CYCLES: usize = 16;
+
+const BANK: &str = include_str!("bank.vh");
+const BEFORE: &str = include_str!("before.vh");
+const FOLLOWS: &str = include_str!("follows.vh");
+const TRANSFER: &str = include_str!("transfer.vh");
+
+/// What is claimed of a block.
+pub(super) struct Claim {
+    /// Type of the block.
+    pub type_name: &'static str,
+    /// What its inputs may be.
+    pub inputs: &'static str,
+    texts: &'static [&'static str],
+    /// Properties whose induction takes as many cycles as the longest wait.
+    waits: &'static [&'static str],
+}
+
+const MASTER: &str =
+    "any master within the rules of the bus, any bank that answers each access within four cycles";
+
+/// All of them.
+pub(super) const CLAIMS: [Claim; 5] = [
+    Claim {
+        type_name: "ApbFront",
+        inputs: MASTER,
+        texts: &[BANK, BEFORE, include_str!("apb.vh"), FOLLOWS, TRANSFER],
+        waits: &["answers_in_time"],
+    },
+    Claim {
+        type_name: "WishboneFront",
+        inputs: MASTER,
+        texts: &[BANK, BEFORE, include_str!("wishbone.vh"), FOLLOWS, TRANSFER],
+        waits: &["answers_in_time"],
+    },
+    Claim {
+        type_name: "AhbLiteFront",
+        inputs: MASTER,
+        texts: &[BANK, include_str!("ahb_lite.vh"), TRANSFER],
+        waits: &["answers_in_time"],
+    },
+    Claim {
+        type_name: "AxiLiteFront",
+        inputs: MASTER,
+        texts: &[BANK, include_str!("axi_lite.vh")],
+        waits: &["write_answers_in_time", "read_answers_in_time"],
+    },
+    Claim {
+        type_name: "RegisterBank",
+        inputs: "any front, in every cycle",
+        texts: &[include_str!("ring.vh")],
+        waits: &[],
+    },
+];
+
+/// Types of blocks with a claim, and what is promised of each.
+pub fn claimed() -> Vec<(&'static str, Vec<Property>)> {
+    let all = CLAIMS.iter();
+    all.map(|claim| (claim.type_name, claim.properties()))
+        .collect()
+}
+
+/// What is claimed of a module.
+pub(super) fn claim_of(module: &Module) -> Option<&'static Claim> {
+    let mut all = CLAIMS.iter();
+    all.find(|claim| claim.type_name == module.type_name)
+}
+
+impl Claim {
+    /// What is promised, in words, and last what holds inside.
+    pub fn properties(&self) -> Vec<Property> {
+        let text = self.texts.concat();
+        let mut found = properties(&text);
+        let promised: usize = found.iter().map(|p| p.assertions).sum();
+        let all = text.matches(": assert (").count();
+        found.push(Property {
+            name: INSIDE_NAME.into(),
+            words: INSIDE_WORDS.into(),
+            begins: rtl_design::elaborate::properties::Begins::AtStart,
+            assertions: all - promised,
+        });
+        found
+    }
+
+    /// The text for a module of a design.
+    fn text(&self, module: &Module) -> String {
+        let mut parameters = module.parameters.iter();
+        let last = parameters.find(|p| p.name.eq_ignore_ascii_case("last_block"));
+        let blocks = last.map_or(String::new(), |last| {
+            format!("    localparam [8:0] BLOCKS = {};\n", last.value + 1)
+        });
+        blocks + &self.texts.concat()
+    }
+
+    /// Proves it; what is said of each property.
+    pub fn rows(
+        &self,
+        design: &Design,
+        files: &[Artifact],
+        top: usize,
+        folder: &Path,
+    ) -> Result<Vec<Row>, GenError> {
+        let module = &design.modules[top];
+        let answer = self.ask(design, files, top, folder, "")?;
+        let known = self.properties();
+        let place = |path: &String| {
+            let label = path.rsplit('.').next().unwrap_or(path);
+            of_label(&known, label).unwrap_or(known.len() - 1)
+        };
+        let failed: Vec<usize> = answer.failed.iter().map(place).collect();
+        let verdict = |n: usize| match (failed.is_empty(), failed.contains(&n)) {
+            (true, _) => Verdict::Proved,
+            (_, false) => Verdict::Undecided,
+            _ if answer.is_reached => Verdict::Violated {
+                after_cycles: answer.cycles,
+            },
+            _ => Verdict::NotProved,
+        };
+        let rows = known.iter().enumerate().map(|(n, property)| Row {
+            module: module.name.clone(),
+            name: property.name.clone(),
+            words: property.words.clone(),
+            from_any_state: false,
+            assertions: property.assertions,
+            verdict: verdict(n),
+            trace: None,
+        });
+        Ok(rows.collect())
+    }
+
+    /// Asks the solver about these files; `first` is what yosys does before it reads them. A run that breaks a promise is looked for where the induction finds none that begins at the start values.
+    pub fn ask(
+        &self,
+        design: &Design,
+        files: &[Artifact],
+        top: usize,
+        folder: &Path,
+        first: &str,
+    ) -> Result<Answer, GenError> {
+        let module = &design.modules[top];
+        let files: Vec<_> = files.iter().map(|f| f.path.as_str()).collect();
+        let starts = start_values(design, top);
+        let flat = tools::flat(folder, &files, &module.name, first, &starts)?;
+        let text = self.text(module);
+        let (promises, _) = text.split_once(INSIDE).unwrap_or((&text, ""));
+        let is_wait = |line: &str| {
+            let mut all = self.waits.iter();
+            all.any(|name| line.contains(&format!(" {name}: ")))
+        };
+        let without_waits: String = lines(&text, |line| (!is_wait(line)).then(|| line.into()));
+        let others_granted = lines(&text, |line| match is_wait(line) {
+            true => Some(line.into()),
+            false => Some(line.replace(": assert (", ": assume (")),
+        });
+        let mut runs = vec![(without_waits, DEPTH)];
+        if !self.waits.is_empty() {
+            runs.push((others_granted, WAIT_DEPTH));
+        }
+        for (claims, depth) in runs {
+            let model = tools::claims(folder, &flat, &module.name, &claims)?;
+            let depth = depth.to_string();
+            let step = tools::solve(folder, &model, &["-i", "-t", &depth])?;
+            let base = match step.failed.is_empty() {
+                true => tools::solve(folder, &model, &["--presat", "-t", &depth])?,
+                false => step,
+            };
+            if base.failed.is_empty() {
+                continue;
+            }
+            let model = tools::claims(folder, &flat, &module.name, promises)?;
+            let depth = SEARCH_CYCLES.to_string();
+            let found = tools::solve(folder, &model, &["-t", &depth])?;
+            return Ok(match found.failed.is_empty() {
+                true => Answer {
+                    is_reached: false,
+                    ..base
+                },
+                false => found,
+            });
+        }
+        Ok(Answer::default())
+    }
+}
+
+fn lines(text: &str, change: impl Fn(&str) -> Option<String>) -> String {
+    let kept = text.lines().filter_map(change);
+    kept.map(|line| line + "\n").collect()
+}
+
+/// What each register of a module and those inside begins with where the text does not say it: a card without start values begins
+/// with a reset. Path in the flat module, width and value.
+fn start_values(design: &Design, top: usize) -> Vec<(String, usize, u128)> {
+    if design.has_initial_values {
+        return vec![];
+    }
+    let mut found = vec![];
+    let mut open = vec![(String::new(), top)];
+    while let Some((path, index)) = open.pop() {
+        let module = &design.modules[index];
+        for register in module.registers.iter().filter(|r| r.reset.is_some()) {
+            let net = &module.nets[register.q];
+            let name = rtl_design::verilog::emitted_name(&net.name);
+            found.push((format!("{path}{name}"), net.width_bits, register.start));
+        }
+        for instance in &module.instances {
+            open.push((format!("{path}{}.", instance.name), instance.module));
+        }
+    }
+    found
+}
