@@ -101,7 +101,12 @@ fn value(key: &Key) -> Value {
             let mut list = json!({"type": "array", "items": {"type": "string"}});
             if few {
                 list["items"]["enum"] = choices.into();
+            }
+            if few && !key.repeats {
                 list["uniqueItems"] = true.into();
+            }
+            if key.most > 0 {
+                list["maxItems"] = key.most.into();
             }
             if let (true, Some(first)) = (key.first_leads, words.first()) {
                 list["anyOf"] = json!([{"maxItems": 0}, {"contains": {"const": first}}]);

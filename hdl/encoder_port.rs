@@ -19,6 +19,7 @@ use crate::endat::transaction::cause;
 use crate::ports::*;
 use crate::protocols::ssi::port::SsiPort;
 use crate::protocols::t_format::port::TFormatPort;
+use crate::protocols::Spoken;
 use crate::several::each;
 use endat_regs::Protocol;
 use rtl_design::{kernel, Block};
@@ -184,6 +185,21 @@ impl EncoderPort {
             Protocol::Ssi => others.ssi.push(SsiPort::default()),
             Protocol::Endat => panic!("EncoderPort::served makes ports for EnDat"),
         }
+        Self::of(vec![], others, vec![], vec![], has_io)
+    }
+
+    /// The same for what is asked of a channel, as far as no setting says it.
+    ///
+    /// # Panics
+    /// As [`Self::speaking`].
+    pub fn asked(spoken: &Spoken, has_io: bool) -> Self {
+        let Spoken::Ssi(asked) = spoken else {
+            return Self::speaking(spoken.protocol(), has_io);
+        };
+        let others = Others {
+            ssi: vec![SsiPort::new(asked)],
+            ..Others::default()
+        };
         Self::of(vec![], others, vec![], vec![], has_io)
     }
 

@@ -31,6 +31,8 @@ pub struct ProtocolRow {
     pub part: Option<Part>,
     /// Low bits of a position that are the place within a turn, if no encoder tells it; all of them where nothing says what a turn is.
     pub single_bits: Option<u32>,
+    /// `status.line` has bits of the frame that are not position, no flags.
+    pub has_special_bits: bool,
 }
 
 /// What a field of all channels is in one protocol.

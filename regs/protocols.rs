@@ -33,6 +33,7 @@ const ENDAT: ProtocolRow = ProtocolRow {
     channels: None,
     part: None,
     single_bits: None,
+    has_special_bits: false,
 };
 
 impl Protocol {

@@ -23,6 +23,7 @@ mod service {
 }
 mod ssi {
     mod card;
+    mod special;
 }
 mod stream {
     mod infos;

@@ -355,6 +355,8 @@ static void take_apart(const uint32_t *words, bool has_infos, uint32_t protocol,
     result->delay_cycles = (uint16_t)((delay_high << 10u) | delay_low);
     result->recovery_cycles = (uint16_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_AGE_RECOVERY_RECOVERY_CYCLES, age);
     result->width_bits = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_POSITION_HIGH_WIDTH, high);
+    result->special_bits =
+        (protocol == ENDAT_PROTOCOL_SSI) ? (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_LINE, status) : 0u;
     result->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, status), protocol);
     result->valid = (status & ENDAT_MAP_RESULT_STATUS_VALID_MASK) != 0u;
     result->fresh = (status & ENDAT_MAP_RESULT_STATUS_FRESH_MASK) != 0u;

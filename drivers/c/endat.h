@@ -129,6 +129,7 @@ typedef struct {
     uint16_t delay_cycles;    /**< Tracked line delay. */
     uint16_t recovery_cycles; /**< Recovery time of the last frame. */
     uint8_t width_bits;       /**< Of the position; 0: none yet, or another protocol than EnDat. */
+    uint8_t special_bits;     /**< SSI: bits of the last frame that are not position and that are shown, the last one in bit 0; otherwise 0. */
     uint8_t cause;            /**< Primary cause, ENDAT_CAUSE_...: endat_cause_text(). */
     bool valid;               /**< There is a good position. */
     bool fresh;               /**< The last result brought it: test this, not the cause. */

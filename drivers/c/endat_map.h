@@ -708,6 +708,10 @@
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_UPSET 6u /* stored data upset */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_TRIGGER_OVERRUN 7u /* trigger overrun */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_RECOVERY_TOO_LONG 8u /* recovery time too long */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_ENCODER_ALARM 9u /* alarm of the encoder */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_POWER_FAIL 10u /* power failure of the encoder */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_POSITION_NOT_VALID 11u /* the encoder calls the position not valid */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SSI_POSITION_CRC 12u /* CRC of the position */
 /* valid: There is a good position */
 #define ENDAT_MAP_RESULT_STATUS_VALID_SHIFT 22u
 #define ENDAT_MAP_RESULT_STATUS_VALID_MASK 0x00400000u
@@ -730,6 +734,15 @@
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_MULTI_TURN_ALARM 0x2u /* multi-turn or battery alarm */
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_UPSET 0x4u /* stored data upset */
 #define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_TRIGGER_OVERRUN 0x8u /* trigger overrun */
+/* line: on an SSI channel */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SSI_SPECIAL_0 0x1u /* last special bit that is shown */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SSI_SPECIAL_1 0x2u /* special bit before it */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SSI_SPECIAL_2 0x4u /* special bit 2 before special_0 */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SSI_SPECIAL_3 0x8u /* special bit 3 before special_0 */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SSI_SPECIAL_4 0x10u /* special bit 4 before special_0 */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SSI_SPECIAL_5 0x20u /* special bit 5 before special_0 */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SSI_SPECIAL_6 0x40u /* special bit 6 before special_0 */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SSI_SPECIAL_7 0x80u /* special bit 7 before special_0 */
 
 /* ro: Last good position, bits 31..0. */
 #define ENDAT_MAP_RESULT_POSITION_LOW_WORD(channel) (0x181u + 8u * (channel))
@@ -810,6 +823,10 @@
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_UPSET 0x20u /* stored data upset */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_TRIGGER_OVERRUN 0x40u /* trigger overrun */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_RECOVERY_TOO_LONG 0x80u /* recovery time too long */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_ENCODER_ALARM 0x100u /* alarm of the encoder */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_POWER_FAIL 0x200u /* power failure of the encoder */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_POSITION_NOT_VALID 0x400u /* the encoder calls the position not valid */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SSI_POSITION_CRC 0x800u /* CRC of the position */
 
 /* ro: Age and recovery time. */
 #define ENDAT_MAP_RESULT_AGE_RECOVERY_WORD(channel) (0x185u + 8u * (channel))
@@ -2152,5 +2169,9 @@
 #define ENDAT_CAUSE_POSITION_PARITY 68u /* parity of the position */
 #define ENDAT_CAUSE_COPIES_DIFFER 69u /* the two copies differ */
 #define ENDAT_CAUSE_RECOVERY_TOO_LONG 72u /* recovery time too long */
+#define ENDAT_CAUSE_ENCODER_ALARM 73u /* alarm of the encoder */
+#define ENDAT_CAUSE_POWER_FAIL 74u /* power failure of the encoder */
+#define ENDAT_CAUSE_POSITION_NOT_VALID 75u /* the encoder calls the position not valid */
+#define ENDAT_CAUSE_POSITION_CRC 76u /* CRC of the position */
 
 #endif

@@ -40,6 +40,10 @@ static const uint8_t ssi_causes[] = {
     ENDAT_CAUSE_UPSET,
     ENDAT_CAUSE_TRIGGER_OVERRUN,
     ENDAT_CAUSE_RECOVERY_TOO_LONG,
+    ENDAT_CAUSE_ENCODER_ALARM,
+    ENDAT_CAUSE_POWER_FAIL,
+    ENDAT_CAUSE_POSITION_NOT_VALID,
+    ENDAT_CAUSE_POSITION_CRC,
 };
 
 uint8_t endat_cause_of(uint32_t code, uint32_t protocol)
@@ -143,6 +147,10 @@ static const char *const causes[] = {
     NULL,
     NULL,
     "recovery time too long",
+    "alarm of the encoder",
+    "power failure of the encoder",
+    "the encoder calls the position not valid",
+    "CRC of the position",
 };
 
 const char *endat_cause_text(uint32_t number)
@@ -224,12 +232,16 @@ static const char *const meanings[] = {
     NULL,
     "config<n>.frame.command of an SSI channel has no bit 2, or what a host wrote to the configuration was disturbed; nothing was clocked.",
     "The DATA line of an SSI encoder was LOW when a frame was to begin, and nothing was clocked, or at the first rising edge of CLOCK: it still held the last position, has no supply, or the pair is swapped or shorted.",
-    "DATA was HIGH after the last bit, or between two copies: nothing is plugged in, the encoder has another width than configured, or its bits come too late for this clock.",
-    "The parity bit behind the position does not fit it: a bit was disturbed, or the encoder has no parity, or the other one.",
+    "DATA was HIGH after the last bit, or between two copies: nothing is plugged in, the encoder has another width than configured or keeps its last bit on the line, or its bits come too late for this clock.",
+    "A parity bit does not fit the bits before it: a bit was disturbed, or the encoder has no parity, or the other one.",
     "The position came twice, and not the same: a bit was disturbed, or the encoder takes a new position for each copy.",
     NULL,
     NULL,
     "After a frame DATA was still LOW when recovery_max_ns had passed: the line is broken or shorted, or the encoder needs longer than configured. The position of that frame is withdrawn. The next result says so, too; its own position is good.",
+    "A bit of the frame that bits_before or bits_after calls alarm says so: the encoder's position cannot be trusted. The position is not taken.",
+    "A bit of the frame that bits_before or bits_after calls power_fail says so: the encoder's supply is too low. The position is not taken.",
+    "A bit of the frame that bits_before or bits_after calls valid is not set: the encoder is starting, moves too fast, or has lost its magnet or scale. The position is not taken.",
+    "The CRC in bits_after does not fit the bits before it: a bit was disturbed, or the frame has other bits than configured.",
 };
 
 const char *endat_cause_meaning(uint32_t number)
@@ -311,12 +323,16 @@ static const char *const remedies[] = {
     NULL,
     "Write the configuration again: 4 to config<n>.frame.command, 5 for Gray code, 6 and 7 for the same twice.",
     "Look at plug, supply and pair; trigger more slowly, and compare recovery_max_ns with the encoder's monoflop time.",
-    "Look at plug and supply; compare position_bits with the data sheet; lower clock_hz.",
-    "Look at termination and shield; lower clock_hz; compare parity with the data sheet.",
+    "Look at plug and supply; compare position_bits and end_low with the data sheet; lower clock_hz.",
+    "Look at termination and shield; lower clock_hz; compare parity and bits_after with the data sheet.",
     "Look at termination and shield; lower clock_hz; leave twice out if the encoder does not repeat.",
     NULL,
     NULL,
     "Look at plug and pair; raise recovery_max_ns to the encoder's monoflop time.",
+    "Look at the encoder's data sheet for what the bit means; compare bits_before, bits_after and position_bits with it.",
+    "Look at supply, cable and plug: the voltage at the encoder; compare bits_before, bits_after and position_bits with the data sheet.",
+    "Look at the encoder's data sheet for what the bit means; compare bits_before, bits_after and position_bits with it.",
+    "Look at termination and shield; lower clock_hz; compare bits_before, bits_after and position_bits with the data sheet.",
 };
 
 const char *endat_cause_remedy(uint32_t number)

@@ -90,6 +90,8 @@ pub struct Reading {
     pub delay_cycles: u16,
     /// Recovery time of the last frame.
     pub recovery_cycles: u16,
+    /// Bits of the last frame that are not position and that are shown, the last one in bit 0, where the protocol has such bits.
+    pub special_bits: Option<u8>,
     /// Primary cause, a number of [`causes::ALL`]; 0 = none.
     pub cause: u8,
     /// Everything that was wrong with the frame, a bit for each: see [`Self::flag_names`].
@@ -128,6 +130,8 @@ impl Reading {
             age_us: field!(RESULT.age_recovery.age_us).of(age) as u16,
             delay_cycles: (delay_high << delay_low.width | delay_low.of(evidence)) as u16,
             recovery_cycles: field!(RESULT.age_recovery.recovery_cycles).of(age) as u16,
+            special_bits: (protocol.row().has_special_bits)
+                .then(|| field!(RESULT.status.line).of(status) as u8),
             cause: causes::number(field!(RESULT.status.cause).of(status) as u8, protocol),
             flags: FLAGS[0].of(evidence) | FLAGS[1].of(status) << FLAGS[0].width,
             valid: is(status, field!(RESULT.status.valid)),

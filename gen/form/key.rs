@@ -82,6 +82,8 @@ pub struct Key {
     pub takes: &'static str,
     /// The first of its words is there whenever another one is.
     pub first_leads: bool,
+    /// Each of its words may come more than once.
+    pub repeats: bool,
     /// Most characters of a text, or values of a list; 0 = no limit.
     pub most: usize,
     /// What a text matches, as a regular expression; empty = anything.
@@ -115,6 +117,7 @@ impl Key {
             forms: u8::MAX,
             takes: "",
             first_leads: false,
+            repeats: false,
             most: 0,
             pattern: "",
             step: 1,
@@ -200,6 +203,14 @@ impl Key {
     pub const fn first_leads(self) -> Self {
         Self {
             first_leads: true,
+            ..self
+        }
+    }
+
+    /// The same where words have an order, and each may come more than once.
+    pub const fn repeating(self) -> Self {
+        Self {
+            repeats: true,
             ..self
         }
     }

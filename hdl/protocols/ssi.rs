@@ -9,10 +9,13 @@
 //! Each bit is taken where the clock rises for the next one, so that cable and encoder have a whole period for it. A frame that goes on within
 //! tm brings the same position once more, behind one LOW bit: two copies that differ give no position.
 //!
-//! Reading order: [`protocol`] and [`cause`] (facts), [`asked`] (what a configuration asks for), [`port`] (an encoder as a channel of a card).
+//! Reading order: [`protocol`] and [`cause`] (facts), [`asked`] (what a configuration asks for), [`specials`] (bits that are not position),
+//! [`port`] (an encoder as a channel of a card).
 
 pub mod asked;
 pub use endat_regs::protocols::ssi::causes as cause;
 pub(crate) mod config;
 pub mod port;
 pub mod protocol;
+pub mod special_bits;
+pub mod specials;

@@ -23,6 +23,7 @@ pub const PROTOCOL: ProtocolRow = ProtocolRow {
     channels: channels("ssi", 24, "SSI: bit n for channel n"),
     part: None,
     single_bits: Some(MAX_POSITION_BITS),
+    has_special_bits: true,
 };
 
 /// Causes under the codes of a result.
@@ -41,9 +42,21 @@ const FLAGS: [Named; cause::ALL.len() - 1] = {
     flags
 };
 
+/// Bits of the frame that are not position, beside the flags.
+const SPECIALS: &[Named] = &[
+    named("special_0", 0, "last special bit that is shown"),
+    named("special_1", 1, "special bit before it"),
+    named("special_2", 2, "special bit 2 before special_0"),
+    named("special_3", 3, "special bit 3 before special_0"),
+    named("special_4", 4, "special bit 4 before special_0"),
+    named("special_5", 5, "special bit 5 before special_0"),
+    named("special_6", 6, "special bit 6 before special_0"),
+    named("special_7", 7, "special bit 7 before special_0"),
+];
+
 const FIELDS: &[OwnField] = &[
     own("cause", Values::Codes(CAUSES), &[]),
-    own("line", Values::Bits(&[]), &[]),
+    own("line", Values::Bits(SPECIALS), &[]),
     own("flags", Values::Bits(&FLAGS), &[]),
     own("period_cycles", Values::Plain, &[(4, 2047)]),
     own("position_bits", Values::Plain, &[(1, 48)]),

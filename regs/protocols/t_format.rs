@@ -29,6 +29,7 @@ pub const PROTOCOL: ProtocolRow = ProtocolRow {
     channels: channels("t_format", 0, "T-format: bit n for channel n"),
     part: Some(Part::TFormat),
     single_bits: Some(24),
+    has_special_bits: false,
 };
 
 /// Causes under the codes of a result.

@@ -31,6 +31,12 @@ pub struct EncoderConfig {
     pub gray: bool,
     /// Behind the position comes a bit with which the ones are even, or odd if this is true.
     pub parity: Option<bool>,
+    /// Bits before the position, in the order in which it sends them.
+    pub before: Vec<Extra>,
+    /// Bits after the position, and after its parity bit.
+    pub after: Vec<Extra>,
+    /// DATA keeps the last bit until `tm` is over, instead of LOW; only without `repeats`.
+    pub keeps_last: bool,
     /// It sends the same position again if the clock goes on within `tm`; otherwise DATA stays LOW then.
     pub repeats: bool,
     /// Recovery time: from the last falling edge until DATA is HIGH.
@@ -56,6 +62,9 @@ impl Default for EncoderConfig {
             position_bits: 25,
             gray: false,
             parity: None,
+            before: vec![],
+            after: vec![],
+            keeps_last: false,
             repeats: true,
             tm: 20 * US,
             bit_delay: 150 * NS,
@@ -78,7 +87,42 @@ impl EncoderConfig {
         let places = (0..self.position_bits).rev();
         let bits = places.map(|n| code >> n & 1 == 1);
         let parity = self.parity.map(|odd| (code.count_ones() % 2 == 1) != odd);
-        bits.chain(parity).collect()
+        let mut sent = vec![];
+        self.before.iter().for_each(|extra| extra.send(&mut sent));
+        sent.extend(bits.chain(parity));
+        self.after.iter().for_each(|extra| extra.send(&mut sent));
+        sent
+    }
+}
+
+/// A bit that is not position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extra {
+    /// This level.
+    Level(bool),
+    /// With it all bits that have been sent have an even number of ones, or an odd one if this is true.
+    Parity(bool),
+    /// Six bits, most significant first: the remainder of all bits that have been sent, with six zeros after them, divided by x^6 + x + 1.
+    Crc6,
+}
+
+impl Extra {
+    /// Sends it after these.
+    fn send(self, sent: &mut Vec<bool>) {
+        match self {
+            Self::Level(level) => sent.push(level),
+            Self::Parity(odd) => {
+                sent.push((sent.iter().filter(|bit| **bit).count() % 2 == 1) != odd)
+            }
+            Self::Crc6 => {
+                let divided = sent.iter().map(|bit| u64::from(*bit)).chain([0; 6]);
+                let remainder = divided.fold(0, |rest, bit| {
+                    let rest = rest << 1 | bit;
+                    rest ^ if rest & 0x40 == 0 { 0 } else { 0x43 }
+                });
+                sent.extend((0..6).rev().map(|n| remainder >> n & 1 == 1));
+            }
+        }
     }
 }
 
@@ -237,7 +281,8 @@ impl Encoder {
         if let Defect::Longer(bits) = self.config.defect {
             self.word.extend(vec![true; bits]);
         }
-        self.word.push(false);
+        let last = self.word.last().is_some_and(|last| *last);
+        self.word.push(self.config.keeps_last && last);
     }
 
     fn fall(&mut self, time: Time) {
@@ -266,7 +311,10 @@ impl Encoder {
         let is_over = !self.config.repeats && self.rises >= self.word.len() as u64;
         let place = (self.rises % self.word.len() as u64) as usize;
         self.rises += 1;
-        let mut level = !is_over && self.word[place];
+        let mut level = match is_over {
+            true => self.word.last().is_some_and(|last| *last),
+            false => self.word[place],
+        };
         if let Defect::Flip { copy, bit } = self.config.defect {
             level ^= copy == self.copies && bit == place;
         }

@@ -33,7 +33,7 @@ const BASES: [&str; 7] = [
      reply_gap_us = 30\nfield_gap_us = 3\nfilter_ns = 20\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
     "name = \"serial\"\n[clock]\nsystem_hz = 100_000_000\n[[channel]]\nprotocol = \"ssi\"\nposition_bits = 25\nclock_hz = 500_000\n\
      code = \"gray\"\nparity = \"odd\"\ntwice = true\ntst_ns = 2_000\nfilter_ns = 20\nrecovery_min_ns = 12_000\nrecovery_max_ns = 20_000\ncable_m = 20\n\
-     [trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
+     bits_before = [\"ignored\"]\nbits_after = [\"alarm\"]\nend_low = true\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
     "name = \"receiver\"\n[host]\nbus = \"dsp\"\n[[channel]]\nprotocol = \"t_format\"\nencoder = \"one\"\nbit_hz = 2_500_000\n\
      request = 6\nreply_gap_us = 30\nfield_gap_us = 3\nfilter_cycles = 2\n[device]\ninitial_values = false\n",
     "name = \"least\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\

@@ -137,7 +137,12 @@ fn wrong_values(key: &Key) -> Vec<(&'static str, Value)> {
                     "word",
                     Value::from(vec![first.clone(), "no_such_word".into()]),
                 ));
-                wrong.push(("twice", Value::from(vec![first.clone(), first])));
+                if !key.repeats {
+                    wrong.push(("twice", Value::from(vec![first.clone(), first.clone()])));
+                }
+                if key.most > 0 {
+                    wrong.push(("many", Value::from(vec![first; key.most + 1])));
+                }
             }
         }
         Kind::Numbers => {

@@ -25,6 +25,7 @@ const BARE: &str = "name = \"bare\"\n[clock]\nsystem_hz = 48_000_000\n[endat]\nc
 const FULL: &str = "name = \"full\"\n[clock]\nsystem_hz = 60_000_000\n[endat]\nclock_hz = 2_000_000\ncable_m = 7\n\
     [[channel]]\nposition_bits = 21\ncommand = \"111000\"\n[[channel]]\nprotocol = \"t_format\"\nbit_hz = 2_500_000\n\
     [[channel]]\nprotocol = \"ssi\"\nposition_bits = 12\nclock_hz = 500_000\n\
+    bits_before = [\"alarm\"]\nbits_after = [\"valid\", \"shown\", \"parity_even\"]\n\
     [trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n[link]\nbaud = 1_000_000\nread_hz = 100\n[stream]\nfifo_bytes = 1024\n";
 
 /// What the small card has not, and the full one neither.

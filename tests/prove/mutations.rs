@@ -115,5 +115,7 @@ pub const MUTATIONS: &[(Mutation, &str)] = &[
     (mutation("ready at once after a reset", "ssi_port", "state <= 4'd6;", "state <= 4'd0;"), "waits_after_reset"),
     (mutation("a position not withdrawn", "ssi_port", ".withdraw(is_late)", ".withdraw(1'b0)"), "withdrawn"),
     (mutation("copies not compared", "ssi_port", "frame[1] & (word != again)", "frame[1] & (word[0] != again[0])"), "good_is_whole"),
+    (mutation("a special bit stored inverted", "special_bits", "status_next = {status[12:0], level}", "status_next = {status[12:0], !level}"), "special_as_it_came"),
+    (mutation("an alarm not told", "special_bits", "bad = bad_before | {2'd0, |(status & ALARM_MASK)}", "bad = bad_before | 3'd0"), "special_is_found"),
     (mutation("a result owed for every strobe", "channel_registers_1", "waiting_next = 1'b0;", "waiting_next = trigger;"), "owed_once"),
 ];

@@ -66,6 +66,33 @@ fn it_passes_on_a_narrow_card_and_fails_on_broken_ports() {
     check_some("ssi-quick", &narrow(), MUTATIONS, &names);
 }
 
+/// Channels with special bits on both sides of the position, and one of an encoder that keeps its last bit on the line.
+fn special() -> Vec<Artifact> {
+    let all = format!("{SSI}position_bits = 6\nclock_hz = 1_000_000\ncable_m = 10\ncode = \"gray\"\nparity = \"odd\"\ntwice = true\n\
+        bits_before = [\"ignored\", \"not_alarm\", \"shown\"]\nbits_after = [\"valid\", \"power_fail\", \"parity_odd\", \"crc6\"]\n");
+    let held =
+        format!("{SSI}position_bits = 5\nclock_hz = 1_000_000\ncable_m = 10\nend_low = false\n");
+    emitted(32_000_000, &[&all, &held], APB)
+}
+
+#[test]
+fn it_passes_on_special_bits_and_fails_without_them() {
+    let names = [
+        "bits before the position taken for it",
+        "bits after the position taken for it",
+        "no alarm",
+        "CRC not looked at",
+        "no recovery time of an encoder that keeps its last bit",
+    ];
+    check_some("ssi-special", &special(), SPECIAL_MUTATIONS, &names);
+}
+
+#[test]
+#[ignore = "slow: every mutation of special bits"]
+fn it_fails_on_every_broken_port_with_special_bits() {
+    check_mutations("ssi-specials", &special(), SPECIAL_MUTATIONS);
+}
+
 #[test]
 #[ignore = "slow: every mutation of the SSI port"]
 fn it_fails_on_every_broken_port() {
@@ -73,6 +100,44 @@ fn it_fails_on_every_broken_port() {
 }
 
 const PORT: &str = "ssi_port";
+
+const SPECIAL: &str = "special_bits";
+/// The port of an encoder that keeps its last bit on the line.
+const HELD_PORT: &str = "ssi_port_holds_end";
+
+/// Ways to break what is there of special bits, and of an end that is not LOW.
+const SPECIAL_MUTATIONS: &[Mutation] = &[
+    mutation(
+        "bits before the position taken for it",
+        SPECIAL,
+        "assign is_position = !is_before & !is_after;",
+        "assign is_position = !is_after;",
+    ),
+    mutation(
+        "bits after the position taken for it",
+        SPECIAL,
+        "assign is_position = !is_before & !is_after;",
+        "assign is_position = !is_before;",
+    ),
+    mutation(
+        "no alarm",
+        SPECIAL,
+        "localparam  [13:0] ALARM_MASK = 14'd8;",
+        "localparam  [13:0] ALARM_MASK = 14'd0;",
+    ),
+    mutation(
+        "CRC not looked at",
+        SPECIAL,
+        "is_wrong_next = is_wrong | (|crc_next);",
+        "is_wrong_next = is_wrong;",
+    ),
+    mutation(
+        "no recovery time of an encoder that keeps its last bit",
+        HELD_PORT,
+        "timer_next = recovery_limit_cycles;",
+        "timer_next = 13'd0;",
+    ),
+];
 
 /// Ways to break the port.
 const MUTATIONS: &[Mutation] = &[

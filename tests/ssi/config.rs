@@ -18,7 +18,43 @@ fn complaint(text: &str) -> String {
 
 #[test]
 fn mistakes_are_told_with_line_and_remedy() {
+    let ignored = ["\"ignored\""; 15].join(", ");
+    let too_many = format!("bits_after = [{ignored}] ");
+    let far = format!(
+        "bits_before = [\"shown\", {}, \"alarm\"] ",
+        ["\"ignored\""; 7].join(", ")
+    );
     for (from, to, is) in [
+        (
+            "bits_before = [] ",
+            "bits_before = [\"ignored\", \"crc6\"] ",
+            "ssi.toml:20: channel[0].bits_before = [\"ignored\", \"crc6\"]: \"crc6\" is of the bits before it, and the position comes after these; move it to bits_after, or call it \"ignored\"",
+        ),
+        (
+            "bits_after = [] ",
+            "bits_after = [\"warning\"] ",
+            "ssi.toml:21: channel[0].bits_after = \"warning\": unknown bit; use \"ignored\", \"shown\", \"alarm\", ",
+        ),
+        (
+            "bits_after = [] ",
+            "bits_after = [\"parity_even\", \"parity_odd\"] ",
+            "has two parity bits or two CRCs; call the first of them \"ignored\"",
+        ),
+        (
+            "bits_after = [] ",
+            &too_many,
+            "channel[0].bits_after = 15 words: a frame has at most 14 bits that are not position; leave out the last ones, with end_low = false",
+        ),
+        (
+            "bits_before = [] ",
+            &far,
+            "a result has room for the last 8 special bits, counted from the last one that is not ignored, and a \"shown\" one is before these; call it \"ignored\"",
+        ),
+        (
+            "twice = true ",
+            "twice = true\nend_low = false #",
+            "channel[1].end_low = false: an encoder that sends its position twice is LOW after each copy; remove end_low, or twice",
+        ),
         (
             "clock_hz = 1_000_000 ",
             "clock_hz = 2_000_000 ",
@@ -67,7 +103,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "sample_hz = 5_000 ",
             "sample_hz = 9_000 ",
-            "a frame of SSI channel 1 takes up to 129.32 us with the recovery time, so at most 7732 Hz; lower it, raise clock_hz = 500000, leave twice out, or shorten recovery_max_ns = 25000 if the data sheet allows it",
+            "a frame of SSI channel 1 takes up to 137.32 us with the recovery time, so at most 7282 Hz; lower it, raise clock_hz = 500000, leave twice out, or shorten recovery_max_ns = 25000 if the data sheet allows it",
         ),
     ] {
         let told = complaint(&changed(from, to));
@@ -89,6 +125,10 @@ fn the_hash_is_of_what_decides() {
         ("code = \"gray\" ", "code = \"binary\" "),
         ("twice = false ", "twice = true "),
         ("twice = false ", "parity = \"odd\" "),
+        ("bits_before = [] ", "bits_before = [\"alarm\"] "),
+        ("bits_after = [] ", "bits_after = [\"alarm\"] "),
+        ("bits_after = [] ", "bits_after = [\"power_fail\"] "),
+        ("end_low = true ", "end_low = false "),
         ("recovery_max_ns = 30_000 ", "recovery_max_ns = 31_000 "),
         ("tst_ns = 2_000 ", "tst_ns = 3_000 "),
     ] {

@@ -71,8 +71,8 @@ const CARDS: [Card; 29] = [
     card("eight_channels", 100_000_000, 4_000_000, "axi_lite", &[NEW, OLD, NEW, OLD, NEW, OLD, NEW, OLD], ""),
     card("t_format", 100_000_000, 0, "apb", &["protocol = \"t_format\"\nbit_hz = 5_000_000\nrequest = 0", T_FORMAT, "protocol = \"t_format\"\nrequest = 12\nfilter_ns = 0"], ""),
     card("both_protocols", 100_000_000, 3_125_000, "axi_lite", &[NEW, T_FORMAT], "[outputs]\nparts = [\"position\", \"interrupt\"]\n[stream]\nfifo_bytes = 1024\nstart = \"collect\"\n"),
-    card("ssi", 33_000_000, 0, "wishbone", &["protocol = \"ssi\"\nposition_bits = 1\nparity = \"even\"\nclock_hz = 500_000", "protocol = \"ssi\"\nposition_bits = 48\nclock_hz = 200_000\ntwice = true"], "[outputs]\nparts = [\"position\"]\n"),
-    card("all_protocols", 70_000_000, 2_500_000, "ahb_lite", &["protocol = \"ssi\"\nposition_bits = 13\ncode = \"gray\"\nclock_hz = 500_000", NEW, T_FORMAT], ""),
+    card("ssi", 33_000_000, 0, "wishbone", &["protocol = \"ssi\"\nposition_bits = 1\nparity = \"even\"\nclock_hz = 500_000", "protocol = \"ssi\"\nposition_bits = 48\nclock_hz = 200_000\ntwice = true\nparity = \"odd\"\nbits_before = [\"not_alarm\", \"ignored\", \"shown\"]\nbits_after = [\"power_fail\", \"valid\", \"ignored\", \"parity_even\", \"crc6\", \"ignored\"]"], "[outputs]\nparts = [\"position\"]\n"),
+    card("all_protocols", 70_000_000, 2_500_000, "ahb_lite", &["protocol = \"ssi\"\nposition_bits = 13\ncode = \"gray\"\nclock_hz = 500_000\nend_low = false", NEW, T_FORMAT], ""),
 ];
 
 /// A bus or a protocol that no emission has would be shown to nobody.

@@ -136,6 +136,9 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
             let flags = r.flag_names(card.identity().protocol(channel));
             object["flags"] = flags.collect::<Vec<_>>().into();
             object["delay_cycles"] = r.delay_cycles.into();
+            if let Some(bits) = r.special_bits {
+                object["special_bits"] = bits.into();
+            }
             for (n, info) in r.infos.iter().enumerate().filter(|_| has_infos) {
                 let good = info.good();
                 let good = good.map(|i| json!({ "status": i.status, "content": i.content }));
@@ -155,9 +158,13 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
             } else {
                 "-".into()
             };
+            let special = match r.special_bits {
+                Some(bits @ 1..) => format!(", special bits 0x{bits:02X}"),
+                _ => String::new(),
+            };
             let _ = writeln!(
                 text,
-                "{channel:>7}  {:<24} {raw:>16}  {:>9}  {}{}",
+                "{channel:>7}  {:<24} {raw:>16}  {:>9}  {}{}{special}",
                 shown(r, scale),
                 r.age_us,
                 painted_verdict(r),

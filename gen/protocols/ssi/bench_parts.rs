@@ -10,6 +10,7 @@ use endat_hdl::endat::timing::cycles_to_ns;
 use endat_hdl::protocols::ssi::asked::Parity;
 use endat_hdl::protocols::ssi::cause;
 use endat_hdl::protocols::ssi::protocol::bit_delay_most_ns;
+use endat_hdl::protocols::ssi::specials::{Special, SHOWN_MAX, SPECIALS_MAX};
 use endat_hdl::protocols::SsiSpec;
 use endat_regs::Protocol;
 use minijinja::context;
@@ -31,6 +32,15 @@ struct Port {
     /// Of the position: bits behind it.
     parity: u8,
     odd: u8,
+    /// Special bits before the position, and after it.
+    before: usize,
+    after: usize,
+    /// Of those after it: the place of a parity bit, and of a CRC.
+    check_at: usize,
+    check_odd: u8,
+    crc_at: usize,
+    has_parity: bool,
+    held: u8,
     bit_delay_ns: String,
     tm_ns: String,
     late_ns: String,
@@ -55,6 +65,17 @@ impl Port {
             twice: asked.twice.into(),
             parity: asked.has_parity().into(),
             odd: u8::from(asked.parity == Parity::Odd),
+            before: asked.before.bits(),
+            after: asked.after.bits(),
+            check_at: place(asked, |s| s.is_check() && s != Special::Crc6),
+            check_odd: asked.after.iter().any(|s| s == Special::ParityOdd).into(),
+            crc_at: place(asked, |s| s == Special::Crc6),
+            has_parity: asked.has_parity()
+                || asked
+                    .after
+                    .iter()
+                    .any(|s| s.is_check() && s != Special::Crc6),
+            held: asked.holds_end.into(),
             bit_delay_ns: whole(BIT_DELAY_NS),
             tm_ns: whole(channel.spec.recovery_max_ns),
             late_ns: whole(late_ns(card, channel)),
@@ -65,6 +86,121 @@ impl Port {
             )),
             mask: format!("{:012X}", (1u64 << channel.position_bits) - 1),
         }
+    }
+}
+
+/// Number of a bit after the position, from 0; one that there is not if it is not there.
+fn place(asked: &SsiSpec, is: fn(Special) -> bool) -> usize {
+    let all = asked.after.iter();
+    let before: usize = all.take_while(|s| !is(*s)).map(Special::bits).sum();
+    match asked.after.iter().any(is) {
+        true => before,
+        false => SPECIALS_MAX,
+    }
+}
+
+/// An alarm that special bits can say.
+#[derive(Serialize)]
+struct Alarm {
+    name: &'static str,
+    cause: u64,
+    /// A bit for each channel that has it.
+    bits: String,
+}
+
+/// Special bits of all channels, as lists of numbers, that of channel 0 last.
+#[derive(Serialize)]
+struct AllSpecials {
+    crc: String,
+    any: String,
+    well: String,
+    alarms: Vec<Alarm>,
+    shown: String,
+    tail: String,
+}
+
+/// Special bits of a channel, the last one in bit 0.
+#[derive(Clone, Default)]
+struct Bits {
+    any: u64,
+    well: u64,
+    alarms: [u64; ALARMS.len()],
+    shown: u64,
+    tail: u32,
+    has_crc: bool,
+}
+
+const ALARMS: [(&str, u64); 3] = [
+    ("ENCODER_ALARM", cause::ALARM),
+    ("POWER_FAIL", cause::POWER_FAIL),
+    ("NOT_VALID", cause::NOT_VALID),
+];
+
+impl Bits {
+    fn new(asked: &SsiSpec) -> Self {
+        let mut bits = Self::default();
+        let mut all: Vec<Special> = asked.specials().collect();
+        all.reverse();
+        let (mut place, mut shown) = (0, vec![]);
+        for special in all {
+            let bit = 1 << place;
+            place += special.bits() as u32;
+            if special.is_shown() {
+                shown.push(bit);
+            }
+            bits.has_crc |= special == Special::Crc6;
+            match special.cause() {
+                None if special.is_check() => {}
+                None => bits.any |= bit,
+                Some((cause, level)) => {
+                    bits.well |= if level { 0 } else { bit };
+                    let rows = ALARMS.iter().zip(&mut bits.alarms);
+                    // One bit for each.
+                    let row = rows.into_iter().find(|((_, of), _)| *of == cause);
+                    row.into_iter().for_each(|(_, mask)| *mask = bit);
+                }
+            }
+        }
+        let first: u64 = shown.first().copied().unwrap_or(1);
+        bits.tail = first.trailing_zeros();
+        bits.shown = shown.iter().sum::<u64>() >> bits.tail & ((1 << SHOWN_MAX) - 1);
+        bits
+    }
+}
+
+impl AllSpecials {
+    /// None if no channel has any.
+    fn new(card: &CardConfig) -> Option<Self> {
+        let of = |c: &ChannelConfig| c.spoken.ssi().map(Bits::new).unwrap_or_default();
+        let has = |c: &ChannelConfig| c.spoken.ssi().is_some_and(SsiSpec::has_specials);
+        card.channels.iter().any(has).then_some(())?;
+        let channels: Vec<Bits> = card.channels.iter().map(of).collect();
+        let list = |width: usize, of: &dyn Fn(&Bits) -> u64| {
+            let all = channels.iter().rev();
+            let numbers: Vec<String> = all.map(|c| format!("{width}'d{}", of(c))).collect();
+            numbers.join(", ")
+        };
+        let alarm = |n: usize| {
+            let (name, cause) = ALARMS[n];
+            let is_there = channels.iter().any(|c| c.alarms[n] != 0);
+            is_there.then(|| Alarm {
+                name,
+                cause,
+                bits: list(SPECIALS_MAX, &|c| c.alarms[n]),
+            })
+        };
+        let crc = channels
+            .iter()
+            .rev()
+            .map(|c| u8::from(c.has_crc).to_string());
+        Some(Self {
+            crc: crc.collect(),
+            any: list(SPECIALS_MAX, &|c| c.any),
+            well: list(SPECIALS_MAX, &|c| c.well),
+            alarms: (0..ALARMS.len()).filter_map(alarm).collect(),
+            shown: list(SHOWN_MAX, &|c| c.shown),
+            tail: list(4, &|c| c.tail.into()),
+        })
     }
 }
 
@@ -87,7 +223,11 @@ pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<Bench
         .collect();
     let masks = ports.iter().map(|p| (p.index, p.mask.clone())).collect();
     let numbers = ports.iter().map(|p| p.index).collect();
+    let held = ports.iter().any(|p| p.held != 0);
     let context = context! {
+        held,
+        specials => Serde(AllSpecials::new(card)),
+        position_crc => cause::CRC,
         name,
         sleeps,
         channels => Serde(ports),

@@ -4,6 +4,7 @@ use crate::explain::rate::{rate, us_of, Rate};
 use crate::other_protocol::OtherReport;
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::protocols::ssi::protocol::bit_delay_most_ns;
+use endat_hdl::protocols::ssi::specials::Special;
 use endat_hdl::protocols::SsiSpec;
 use endat_regs::Protocol;
 use endat_sim::decimal;
@@ -30,6 +31,12 @@ pub struct SsiReport {
     pub parity: String,
     /// It comes twice, and both are compared.
     pub twice: bool,
+    /// Bits before the position that are none of it.
+    pub bits_before: Vec<&'static str>,
+    /// Bits after it.
+    pub bits_after: Vec<&'static str>,
+    /// DATA is LOW after the last bit.
+    pub end_low: bool,
     /// Falling edges of the clock in a frame.
     pub clocks: u64,
     /// From its first edge to the result, in microseconds.
@@ -65,6 +72,9 @@ impl SsiReport {
             gray: asked.gray,
             parity: format!("{:?}", asked.parity).to_lowercase(),
             twice: asked.twice,
+            bits_before: asked.before.iter().map(Special::word).collect(),
+            bits_after: asked.after.iter().map(Special::word).collect(),
+            end_low: !asked.holds_end,
             clocks: asked.clocks(config.position_bits),
             frame_us: us(cycles - config.recovery_limit_cycles),
             bit_delay_max_ns: bit_delay_most_ns(
@@ -90,6 +100,15 @@ impl SsiReport {
         }
     }
 
+    /// Whether a special bit checks the position.
+    fn has_check(&self) -> bool {
+        let is_check = |word: &&str| {
+            let row = Special::ALL.iter().find(|(_, is, _)| is == word);
+            row.is_some_and(|(special, ..)| special.is_check())
+        };
+        self.bits_after.iter().any(is_check)
+    }
+
     /// The lines of channel `index`.
     fn write(&self, f: &mut String, index: usize) -> fmt::Result {
         let encoder = match self.encoder.as_str() {
@@ -106,7 +125,7 @@ impl SsiReport {
         let code = if self.gray { " in Gray code" } else { "" };
         let twice = match self.twice {
             true => ", sent twice and compared",
-            false if self.parity != "none" => "",
+            false if self.parity != "none" || self.has_check() => "",
             false => ", nothing to check it by: see twice and parity",
         };
         let parity = match self.parity.as_str() {
@@ -120,6 +139,17 @@ impl SsiReport {
             self.clocks,
             decimal(self.frame_us, 1)
         )?;
+        for (place, bits) in [("before", &self.bits_before), ("after", &self.bits_after)] {
+            if !bits.is_empty() {
+                writeln!(f, "  {:<16} {}", format!("bits {place}"), bits.join(" "))?;
+            }
+        }
+        if !self.end_low {
+            writeln!(
+                f,
+                "  end              DATA keeps the last bit: a wrong width is not seen, and each frame waits for the whole recovery time"
+            )?;
+        }
         writeln!(
             f,
             "  bits             taken up to {} ns after their clock edge, cable both ways included",

@@ -5,11 +5,13 @@ use crate::virtual_card::deed::Deed;
 use crate::virtual_card::settings::{VirtualConfig, NS_PER_M, SECOND};
 use endat_hdl::config::ChannelConfig;
 use endat_hdl::protocols::ssi::asked::Parity;
+use endat_hdl::protocols::ssi::cause;
+use endat_hdl::protocols::ssi::specials::{Special, Specials};
 use endat_hdl::protocols::SsiSpec;
 use endat_sim::bench::OtherEncoder;
 use endat_sim::encoder::Defect as Wanted;
 use endat_sim::line::FaultKind;
-use endat_sim::ssi::{Defect, EncoderConfig, SsiLink, SsiMotion};
+use endat_sim::ssi::{Defect, EncoderConfig, Extra, SsiLink, SsiMotion};
 use endat_sim::{Time, NS};
 use std::sync::Arc;
 
@@ -19,16 +21,45 @@ pub(crate) const DEVICES: &[&str] = &["SSI"];
 const TURN_BITS: u32 = 13;
 
 /// What it and its line can do of the faults that there are.
-const FAULTS: [&str; 8] = [
+const FAULTS: [&str; 9] = [
     "unplug",
     "plug",
-    "crc (a bit of the second copy, or of the only one, which without a parity bit nobody sees)",
+    "crc (a bit of the second copy, or of the only one, which without parity bit and CRC nobody sees)",
+    "alarm (1: alarm, 2: power fails, 4: position not valid, and their sums; as far as bits_before and bits_after have them)",
     "silent",
     "slow",
     "jitter",
     "line stuck_low or open",
     "heal",
 ];
+
+/// The causes that special bits may be, in the order of the bits of an alarm.
+const ALARMS: [u64; 3] = [cause::ALARM, cause::POWER_FAIL, cause::NOT_VALID];
+
+/// What an encoder sends for these special bits, with such alarms.
+fn extras(specials: &Specials, alarms: u16) -> Vec<Extra> {
+    let extra = |special: Special| match special {
+        Special::ParityEven => Extra::Parity(false),
+        Special::ParityOdd => Extra::Parity(true),
+        Special::Crc6 => Extra::Crc6,
+        Special::Ignored => Extra::Level(false),
+        special => Extra::Level(special.cause().is_none_or(|(cause, level)| {
+            let raised = ALARMS.iter().position(|is| *is == cause);
+            level == raised.is_some_and(|bit| alarms >> bit & 1 == 1)
+        })),
+    };
+    specials.iter().map(extra).collect()
+}
+
+/// The alarms that a channel's special bits can say.
+fn known_alarms(asked: &SsiSpec) -> u16 {
+    let has = |is: &u64| {
+        asked
+            .specials()
+            .any(|s| s.cause().is_some_and(|(c, _)| c == *is))
+    };
+    (ALARMS.iter().enumerate()).fold(0, |known, (bit, is)| known | u16::from(has(is)) << bit)
+}
 
 /// The encoder that a channel is configured for.
 fn fitting(channel: &ChannelConfig, asked: &SsiSpec, seed: u64) -> EncoderConfig {
@@ -37,6 +68,9 @@ fn fitting(channel: &ChannelConfig, asked: &SsiSpec, seed: u64) -> EncoderConfig
         position_bits: channel.position_bits,
         gray: asked.gray,
         parity: asked.has_parity().then_some(asked.parity == Parity::Odd),
+        before: extras(&asked.before, 0),
+        after: extras(&asked.after, 0),
+        keeps_last: asked.holds_end,
         repeats: asked.twice,
         // Well within what is allowed, and longer than any clock's pause.
         tm: tm * 3 / 4,
@@ -71,6 +105,7 @@ pub(crate) fn plug(
     let faults = Faults {
         sound: encoder.clone(),
         spoilt: Spoilt::default(),
+        asked: *asked,
     };
     let mut link = SsiLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
     let turns = motion(n, channel.position_bits, config.speed);
@@ -97,6 +132,7 @@ struct Faults {
     /// As it was.
     sound: EncoderConfig,
     spoilt: Spoilt,
+    asked: SsiSpec,
 }
 
 fn link(encoder: &mut dyn OtherEncoder) -> &mut SsiLink {
@@ -143,6 +179,14 @@ impl Faults {
             Deed::Supply(false) | Deed::Line(FaultKind::Open) => link.unplug(),
             Deed::Slow(by) => link.encoder_mut().config.tm = self.sound.tm + by,
             Deed::Jitter(most) => link.encoder_mut().config.jitter = most,
+            Deed::Status {
+                alarms,
+                warnings: 0,
+            } if alarms & known_alarms(&self.asked) == alarms => {
+                let config = &mut link.encoder_mut().config;
+                config.before = extras(&self.asked.before, alarms);
+                config.after = extras(&self.asked.after, alarms);
+            }
             Deed::Heal => {
                 link.plug();
                 link.encoder_mut().config = self.sound.clone();

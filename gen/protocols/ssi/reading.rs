@@ -1,6 +1,6 @@
 //! The keys of a `[[channel]]` that speaks SSI.
 
-use super::keys::{BINARY, CODE, GRAY, PARITIES, PARITY, TWICE};
+use super::keys::{BINARY, BITS_AFTER, BITS_BEFORE, CODE, END_LOW, GRAY, PARITIES, PARITY, TWICE};
 use crate::config::keys::{
     CABLE, CLOCK_HZ, FILTER_NS, POSITION_BITS, PROTOCOL, RECOVERY_MAX, RECOVERY_MIN, TST_NS,
 };
@@ -8,6 +8,7 @@ use crate::config::reader::{At, Table};
 use crate::form::key::Key;
 use crate::other_protocol::Wanted;
 use endat_hdl::config::{ChannelConfig, ChannelSpec};
+use endat_hdl::protocols::ssi::specials::{Special, Specials, SPECIALS_MAX};
 use endat_hdl::protocols::{Spoken, SsiSpec};
 
 /// What is asked of a channel; none if something could not be read.
@@ -40,10 +41,17 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted> {
         PARITIES.map(|(word, parity, _)| (word, parity)),
     );
     let twice = table.boolean(&TWICE);
+    let [before, after] = [&BITS_BEFORE, &BITS_AFTER].map(|key| specials(table, key, &mut lines));
+    let end_low = table.boolean(&END_LOW);
+    let end_line = end_low.as_ref().map_or(table.line, |at| at.line);
+    lines.push((END_LOW.name, end_line));
     let spoken = Spoken::Ssi(SsiSpec {
         gray: gray?,
         parity: parity?,
         twice: twice.is_some_and(|at| at.value),
+        before: before?,
+        after: after?,
+        holds_end: end_low.is_some_and(|at| !at.value),
     });
     Some(Wanted {
         spec: ChannelSpec {
@@ -58,6 +66,37 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted> {
         },
         lines,
     })
+}
+
+/// The special bits of a list, none if nothing is written.
+fn specials(
+    table: &Table<'_, '_>,
+    key: &'static Key,
+    lines: &mut Vec<(&'static str, usize)>,
+) -> Option<Specials> {
+    let Some(list) = table.strings(key) else {
+        return (!table.has(key.name)).then(Specials::default);
+    };
+    let line = list.first().map_or(table.line, |at| at.line);
+    lines.push((key.name, line));
+    let mut found = vec![];
+    let mut is_good = true;
+    for at in &list {
+        let row = Special::ALL.iter().find(|(_, word, _)| *word == at.value);
+        found.extend(row.map(|(special, ..)| *special));
+        if row.is_none() {
+            let known: Vec<String> = key.words().iter().map(|w| format!("{w:?}")).collect();
+            let text = format!("unknown bit; use {}", known.join(", "));
+            table.complain(at.line, key.name, &format!("{:?}", at.value), &text);
+            is_good = false;
+        }
+    }
+    let specials = Specials::new(&found);
+    if specials.is_none() && is_good {
+        let text = format!("a frame has at most {SPECIALS_MAX} bits that are not position; leave out the last ones, with end_low = false");
+        table.complain(line, key.name, &format!("{} words", list.len()), &text);
+    }
+    specials.filter(|_| is_good)
 }
 
 /// What one of a few words stands for, the first one if nothing is written.
@@ -84,9 +123,19 @@ pub fn canonical(asked: &SsiSpec, channel: &ChannelConfig) -> String {
         gray,
         twice,
         parity,
+        before,
+        after,
+        holds_end,
     } = asked;
+    let mut more = String::new();
+    if asked.has_specials() {
+        more = format!(" before {before} after {after}");
+    }
+    if *holds_end {
+        more += " holds_end";
+    }
     format!(
-        "ssi period_cycles {} first_low {} bits {} filter_cycles {} recovery {} gray {gray} twice {twice} parity {parity:?}",
+        "ssi period_cycles {} first_low {} bits {} filter_cycles {} recovery {} gray {gray} twice {twice} parity {parity:?}{more}",
         channel.period_cycles,
         channel.first_low_extra_cycles,
         channel.position_bits,

@@ -80,7 +80,7 @@ pub fn services(card: &CardConfig) -> usize {
 pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
     let channel = &card.channels[index];
     if !channel.is_endat() {
-        return EncoderPort::speaking(channel.protocol(), index < served_channels(card));
+        return EncoderPort::asked(&channel.spoken, index < served_channels(card));
     }
     let service = card.service.requests.then_some(service);
     EncoderPort::served(
@@ -96,7 +96,7 @@ pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> E
 pub fn bare_port(card: &CardConfig) -> EncoderPort {
     let (channel, service) = (&card.channels[0], service_times(card));
     if !channel.is_endat() {
-        return EncoderPort::speaking(channel.protocol(), false);
+        return EncoderPort::asked(&channel.spoken, false);
     }
     EncoderPort::with_line(
         times(card, channel),

@@ -1,5 +1,6 @@
 //! What is asked of a channel that speaks SSI.
 
+use super::specials::{Special, Specials};
 use endat_regs::protocols::ssi::frame;
 use std::ops::RangeInclusive;
 
@@ -24,6 +25,12 @@ pub struct SsiSpec {
     pub twice: bool,
     /// What stands behind each.
     pub parity: Parity,
+    /// Bits before the position that are none of it.
+    pub before: Specials,
+    /// Bits after the position, and after its parity bit.
+    pub after: Specials,
+    /// The encoder keeps its last bit on the line until the recovery time is over, instead of LOW.
+    pub holds_end: bool,
 }
 
 impl SsiSpec {
@@ -32,9 +39,25 @@ impl SsiSpec {
         !matches!(self.parity, Parity::None)
     }
 
+    /// Whether there are bits that are not position, besides such a parity bit.
+    pub const fn has_specials(&self) -> bool {
+        !self.before.is_empty() || !self.after.is_empty()
+    }
+
+    /// Those bits, in the order in which they come.
+    pub fn specials(&self) -> impl Iterator<Item = Special> + '_ {
+        self.before.iter().chain(self.after.iter())
+    }
+
+    /// Bits of a copy.
+    pub fn copy_bits(&self, position_bits: u32) -> u64 {
+        let others = usize::from(self.has_parity()) + self.before.bits() + self.after.bits();
+        u64::from(position_bits) + others as u64
+    }
+
     /// Falling edges of the clock in a frame.
-    pub const fn clocks(&self, position_bits: u32) -> u64 {
-        (position_bits as u64 + self.has_parity() as u64 + 1) * (1 + self.twice as u64)
+    pub fn clocks(&self, position_bits: u32) -> u64 {
+        (self.copy_bits(position_bits) + 1) * (1 + u64::from(self.twice))
     }
 
     /// The bits of `config.frame.command`.

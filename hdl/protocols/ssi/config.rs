@@ -2,6 +2,7 @@
 
 use super::asked::SsiSpec;
 use super::protocol::{bit_delay_most_ns, BIT_DELAY_NS, LATENCY_CYCLES, PERIOD_CYCLES_MIN};
+use super::specials::{Places, Special, SHOWN_MAX, SPECIALS_MAX};
 use crate::config::{
     check_clock, check_filter, check_tst, limits, microseconds, ChannelConfig, ChannelSpec, Check,
     TooLong, DELAY_NS_PER_M, INPUT_LATENCY_CYCLES,
@@ -40,7 +41,12 @@ impl SsiSpec {
         let half = period / 2;
         let filter_cycles = check_filter(check, request, half, 1, system_hz, "a clock period");
         check_bit_delay(check, request, [period, filter_cycles], system_hz);
-        check_recovery(check, request, period, system_hz);
+        self.check_specials(check);
+        match self.holds_end {
+            true => self.check_held_end(check),
+            false => check_recovery_low(check, request, period, system_hz),
+        }
+        check_recovery(check, request);
         Some(ChannelConfig {
             period_cycles: period,
             first_low_extra_cycles: check_tst(check, request, half, system_hz),
@@ -61,6 +67,48 @@ impl SsiSpec {
         })
     }
 
+    /// The bits that are not position fit the port and the result.
+    fn check_specials(&self, check: &mut Check<'_>) {
+        let lists = [("bits_before", &self.before), ("bits_after", &self.after)];
+        if let Some(special) = self.before.iter().find(|s| s.is_check()) {
+            let text = format!("{:?} is of the bits before it, and the position comes after these; move it to bits_after, or call it \"ignored\"", special.word());
+            check.fail("bits_before", self.before, text);
+            return;
+        }
+        let count = |is: fn(&Special) -> bool| self.after.iter().filter(is).count();
+        let parities = count(|s| s.is_check() && *s != Special::Crc6);
+        if parities > 1 || count(|s| *s == Special::Crc6) > 1 {
+            let text = "has two parity bits or two CRCs; call the first of them \"ignored\"";
+            check.fail("bits_after", self.after, text.into());
+            return;
+        }
+        let bits = self.before.bits() + self.after.bits();
+        let (key, list) = lists[usize::from(!self.after.is_empty())];
+        if bits > SPECIALS_MAX {
+            let text = format!("{bits} bits of a frame are not position, bits_before and bits_after together; at most {SPECIALS_MAX}; leave out the last ones, with end_low = false");
+            check.fail(key, list, text);
+            return;
+        }
+        let places = Places::new(&self.before, &self.after);
+        let shown = self.specials().filter(|s| s.is_shown());
+        let hidden =
+            |(special, place): (Special, &usize)| special == Special::Shown && *place >= SHOWN_MAX;
+        if shown.zip(&places.shown).any(hidden) {
+            let text = format!("a result has room for the last {SHOWN_MAX} special bits, counted from the last one that is not ignored, and a \"shown\" one is before these; call it \"ignored\"");
+            let is_before = self.before.iter().any(|s| s == Special::Shown);
+            let (key, list) = lists[usize::from(!is_before)];
+            check.fail(key, list, text);
+        }
+    }
+
+    /// Between two copies there is a LOW bit, and so there is one after the last.
+    fn check_held_end(&self, check: &mut Check<'_>) {
+        if self.twice {
+            let text = "an encoder that sends its position twice is LOW after each copy; remove end_low, or twice";
+            check.fail("end_low", false, text.into());
+        }
+    }
+
     /// Why a trigger would come before the channel is ready, and the remedy.
     pub(crate) fn too_long(&self, index: usize, channel: &ChannelConfig, times: TooLong) -> String {
         let twice = match self.twice {
@@ -77,12 +125,19 @@ impl SsiSpec {
     }
 }
 
-/// The LOW behind the last bit must still be there where it is looked at: a period behind the last rising edge.
-fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec, period: u64, system_hz: u64) {
+/// The shortest recovery time is no longer than the longest.
+fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec) {
     let (least_ns, most_ns) = (request.recovery_min_ns, request.recovery_max_ns);
     if least_ns > most_ns {
         let text = format!("above recovery_max_ns = {most_ns}; lower it, or raise recovery_max_ns");
         check.fail("recovery_min_ns", least_ns, text);
+    }
+}
+
+/// The LOW behind the last bit must still be there where it is looked at: a period behind the last rising edge.
+fn check_recovery_low(check: &mut Check<'_>, request: &ChannelSpec, period: u64, system_hz: u64) {
+    let least_ns = request.recovery_min_ns;
+    if least_ns > request.recovery_max_ns {
         return;
     }
     let end_cycles = period / 2 + period;

@@ -15,7 +15,9 @@
 //! Guards against upsets: the codes of the states differ in two bits, the clock is what the state says, bits and the edge that takes none are
 //! counted twice, and a frame is good only if all of its bits have come.
 
+use super::asked::SsiSpec;
 use super::cause;
+use super::special_bits::SpecialBits;
 use crate::endat::features::Features;
 use crate::input_filter::InputFilter;
 use crate::lowest_cause::LowestCause;
@@ -70,6 +72,7 @@ pub struct SsiPort {
     #[start]
     primary: LowestCause,
     snapshot: Snapshot,
+    special: Vec<SpecialBits>,
     // As after a frame of which nothing is known: a reset may have come in the middle of one.
     #[start(STATE_LAST.into())]
     state: Reg<Bits<4>>,
@@ -108,6 +111,9 @@ pub struct SsiPort {
     is_last: Signal<Local, Bit>,
     takes_bit: Signal<Local, Bit>,
     bits: Signal<Local, Bits<6>>,
+    is_position: Signal<Local, Bit>,
+    special_found: Signal<Local, Bits<12>>,
+    shown: Signal<Local, Bits<8>>,
     ends_copy: Signal<Local, Bit>,
     is_parity: Signal<Local, Bit>,
     bit_before: Signal<Local, Bit>,
@@ -124,12 +130,15 @@ pub struct SsiPort {
     loses: Signal<Local, Bit>,
     found: Signal<Local, Bits<6>>,
     raised: Signal<Local, Bits<16>>,
+    // Nothing can be said of DATA after the last bit: no check there, and the recovery time lasts as long as it may.
+    holds_end: Constant<Bit>,
     at_rest: Constant<Bits<4>>,
     at_low: Constant<Bits<4>>,
     at_high: Constant<Bits<4>>,
     at_last: Constant<Bits<4>>,
     at_recovery: Constant<Bits<4>>,
     at_judge: Constant<Bits<4>>,
+    _specials: usize,
 }
 
 /// Codes of the states. Each has an even number of ones, so that no upset of one bit makes another state.
@@ -140,9 +149,17 @@ const STATE_LAST: u64 = 6;
 const STATE_RECOVERY: u64 = 9;
 const STATE_JUDGE: u64 = 10;
 
-impl Default for SsiPort {
-    fn default() -> Self {
+impl SsiPort {
+    /// For what is asked, as far as no setting says it: special bits, and how a frame ends.
+    pub fn new(asked: &SsiSpec) -> Self {
+        let special: Vec<SpecialBits> = match asked.has_specials() {
+            true => vec![SpecialBits::new(&asked.before, &asked.after)],
+            false => vec![],
+        };
         Self::from_parts(SsiPortParts {
+            _specials: special.len(),
+            special,
+            holds_end: Constant::new(asked.holds_end),
             filter: InputFilter::new(Features::NONE),
             snapshot: Snapshot::without_earlier(cause::UPSET, cause::flag(cause::UPSET)),
             at_rest: Constant::new(STATE_REST.into()),
@@ -152,6 +169,12 @@ impl Default for SsiPort {
             at_recovery: Constant::new(STATE_RECOVERY.into()),
             at_judge: Constant::new(STATE_JUDGE.into()),
         })
+    }
+}
+
+impl Default for SsiPort {
+    fn default() -> Self {
+        Self::new(&SsiSpec::default())
     }
 }
 
@@ -168,6 +191,7 @@ impl Logic for SsiPort {
         self.time_clock();
         self.clock_frame();
         self.take_bits();
+        self.look_at_special_bits();
         self.recover();
         self.judge();
         self.show_result();
@@ -193,6 +217,9 @@ impl Logic for SsiPort {
         self.bits.next = self.position_bits.val();
         if self.frame.val().get_bit(3) {
             self.bits.next = self.position_bits.val() + 1;
+        }
+        for i in 0..self._specials {
+            self.bits.next = self.special[i].all_bits.val();
         }
         self.ends_copy.next = !self.left.q.val().get_bits::<5>(1).any();
         // This rising edge takes the last bit of the frame.
@@ -247,7 +274,8 @@ impl Logic for SsiPort {
                 if !self.first.q.val() {
                     self.state.d.next = self.at_judge.val();
                     self.timer.d.next = self.recovery_limit_cycles.val();
-                    self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
+                    self.not_low.d.next =
+                        self.not_low.q.val() | (self.filter.level.val() & !self.holds_end.val());
                 }
             } else {
                 // Whatever the line does: a trigger looks at it again.
@@ -287,22 +315,29 @@ impl Logic for SsiPort {
             }
         }
         self.is_parity.next = self.frame.val().get_bit(3) & self.ends_copy.val();
+        for i in 0..self._specials {
+            self.is_parity.next = self.frame.val().get_bit(3) & self.special[i].ends_position.val();
+        }
         if self.takes_bit.val() {
             self.left.d.next = self.left.q.val() - 1;
             self.left_too.d.next = self.left_too.q.val() - 1;
-            // Of the bits as they are sent.
-            self.ones.d.next = self.ones.q.val() ^ self.filter.level.val();
-            if self.is_parity.val() {
-                self.not_even.d.next = self.not_even.q.val()
-                    | (self.ones.q.val() ^ self.filter.level.val() ^ self.frame.val().get_bit(4));
-            } else {
-                if self.second.q.val() {
-                    self.again.d.next =
-                        (self.again.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
+            if self.is_position.val() {
+                // Of the bits as they are sent.
+                self.ones.d.next = self.ones.q.val() ^ self.filter.level.val();
+                if self.is_parity.val() {
+                    self.not_even.d.next = self.not_even.q.val()
+                        | (self.ones.q.val()
+                            ^ self.filter.level.val()
+                            ^ self.frame.val().get_bit(4));
                 } else {
-                    self.word.d.next =
-                        (self.word.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
-                    self.sum.d.next = self.sum.q.val() ^ self.value.val();
+                    if self.second.q.val() {
+                        self.again.d.next =
+                            (self.again.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
+                    } else {
+                        self.word.d.next =
+                            (self.word.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
+                        self.sum.d.next = self.sum.q.val() ^ self.value.val();
+                    }
                 }
             }
             // The second copy begins as the first one.
@@ -321,13 +356,38 @@ impl Logic for SsiPort {
         }
     }
 
+    /// The bits that are not position, if there are any.
+    fn look_at_special_bits(&mut self) {
+        self.is_position.next = true;
+        self.special_found.next = 0.into();
+        self.shown.next = 0.into();
+        for i in 0..self._specials {
+            connect!(self.special[i] <= self; clock, reset, position_bits);
+            self.special[i].has_parity.next = self.frame.val().get_bit(3);
+            self.special[i].begins.next =
+                (self.state.q.val() == self.at_rest.val()) & self.trigger.val();
+            self.special[i].repeats.next = (self.state.q.val() == self.at_low.val())
+                & self.is_due.val()
+                & self.first.q.val()
+                & self.second.q.val();
+            self.special[i].takes.next = self.takes_bit.val();
+            self.special[i].level.next = self.filter.level.val();
+            self.special[i].left.next = self.left.q.val();
+            self.special[i].heard.next = !self.unknown.q.val() & !self.not_high.q.val();
+            self.is_position.next = self.special[i].is_position.val();
+            self.special_found.next = self.special[i].found.val();
+            self.shown.next = self.special[i].shown.val();
+        }
+    }
+
     /// How the recovery time ends.
     fn recover(&mut self) {
         // The encoder is ready again, if DATA was LOW before.
         self.ready.next = (self.state.q.val() == self.at_recovery.val())
             & self.filter.level.val()
             & !self.not_low.q.val()
-            & !self.torn.q.val();
+            & !self.torn.q.val()
+            & !self.holds_end.val();
         // DATA is LOW for another reason than the end of a frame: the position may be wrong.
         self.is_late.next = (self.state.q.val() == self.at_recovery.val())
             & self.is_due.val()
@@ -377,12 +437,19 @@ impl Logic for SsiPort {
             | (bit_cast::<6, 1>(self.not_even.q.val().into()) << 3)
             | (bit_cast::<6, 1>(self.is_other.val().into()) << 4)
             | (bit_cast::<6, 1>(self.is_upset.val().into()) << 5);
-        self.good.next = !self.found.val().any();
+        self.good.next = !self.found.val().any() & !self.special_found.val().any();
         // A lost trigger is for the next result, not for what has become of this one.
         self.raised.next = bit_cast::<16, 6>(self.found.val())
             | (bit_cast::<16, 1>((self.lost.q.val() & !self.is_late.val()).into()) << 6)
-            | (bit_cast::<16, 1>((self.slow.q.val() | self.is_late.val()).into()) << 7);
+            | (bit_cast::<16, 1>((self.slow.q.val() | self.is_late.val()).into()) << 7)
+            | bit_cast::<16, 12>(self.special_found.val());
         self.primary.flags.next = self.raised.val();
+        for i in 0..self._specials {
+            // With a lost trigger, or a late end of the frame before, the position would have been taken.
+            if self.special[i].found.val().any() {
+                self.primary.flags.next = self.raised.val() & 0xFF3F;
+            }
+        }
     }
 
     /// The last good position, and why there is no newer one.
@@ -406,7 +473,8 @@ impl Logic for SsiPort {
         self.snapshot.crc_received_in.next = 0.into();
         self.snapshot.crc_computed_in.next = 0.into();
         self.snapshot.told.cause_told.next = self.primary.cause.val();
-        self.snapshot.told.flags_told.next = bit_cast::<20, 16>(self.raised.val());
+        self.snapshot.told.flags_told.next =
+            bit_cast::<20, 16>(self.raised.val()) | (bit_cast::<20, 8>(self.shown.val()) << 12);
         self.over.next = self.publishes.val();
         self.ssi_clk.next = self.clk.q.val();
         FrameResultOut::link(&mut self.result, &mut self.snapshot.result);

@@ -86,6 +86,7 @@ fn positions_come(rates: &[(u64, u64)], codes: &[(bool, bool, Parity)]) {
                         gray,
                         twice,
                         parity,
+                        ..SsiSpec::default()
                     },
                     ChannelSpec {
                         filter_ns,

@@ -4,12 +4,13 @@ mod broken;
 mod line;
 mod reset;
 mod run;
+mod special;
 mod three_ways;
 mod upsets;
 mod width;
 
 use endat_hdl::encoder_port::EncoderPort;
-use endat_hdl::regs::Protocol;
+use endat_hdl::protocols::{Spoken, SsiSpec};
 use endat_sim::bench::{Bench, PinNames};
 use endat_sim::ssi::{EncoderConfig, SsiLink};
 use endat_sim::Time;
@@ -18,15 +19,15 @@ use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::sync::Arc;
 
-/// A port as a card has it.
-fn block() -> EncoderPort {
-    let mut block = EncoderPort::speaking(Protocol::Ssi, false);
+/// A port as a card has it that is asked for this.
+fn block(asked: &SsiSpec) -> EncoderPort {
+    let mut block = EncoderPort::asked(&Spoken::Ssi(*asked), false);
     block.connect_all();
     block
 }
 
 fn design() -> Design {
-    elaborate(&block(), "encoder_port").unwrap()
+    elaborate(&block(&SsiSpec::default()), "encoder_port").unwrap()
 }
 
 /// A position that nobody can guess.

@@ -1,6 +1,7 @@
 //! A bare SSI port at an encoder, cycle by cycle, with its registers at hand.
 
 use endat_hdl::protocols::ssi::port::SsiPort;
+use endat_hdl::protocols::SsiSpec;
 use endat_sim::ssi::{Encoder, EncoderConfig};
 use endat_sim::US;
 use rtl_design::elaborate::elaborate;
@@ -32,19 +33,26 @@ pub struct Run {
 
 fn engine() -> Compiled {
     static ENGINE: OnceLock<Compiled> = OnceLock::new();
-    let make = || {
-        let mut block = SsiPort::default();
-        block.connect_all();
-        let design = elaborate(&block, "port").unwrap();
-        Compiled::keeping(&design, Keep::Registers).unwrap()
-    };
+    let make = || engine_for(&SsiSpec::default());
     ENGINE.get_or_init(make).clone()
+}
+
+/// A port that is made for this.
+pub fn engine_for(asked: &SsiSpec) -> Compiled {
+    let mut block = SsiPort::new(asked);
+    block.connect_all();
+    let design = elaborate(&block, "port").unwrap();
+    Compiled::keeping(&design, Keep::Registers).unwrap()
 }
 
 impl Run {
     /// A port that is ready for its first trigger.
     pub fn new(settings: Settings, encoder: EncoderConfig) -> Self {
-        let mut engine = engine();
+        Self::of(engine(), settings, encoder)
+    }
+
+    /// The same of a port that is there.
+    pub fn of(mut engine: Compiled, settings: Settings, encoder: EncoderConfig) -> Self {
         for (name, value) in [
             ("data_i", 1),
             ("period_cycles", settings.period_cycles.into()),

@@ -1,12 +1,15 @@
 //! A port for SSI at work with its encoder: kernels, engines and emitted Verilog agree in every cycle.
 
-use super::{bench, block, design, link, power_up};
+use super::{bench, block, link, power_up};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::protocols::ssi::cause;
 use endat_hdl::protocols::ssi::port::frame;
+use endat_hdl::protocols::ssi::specials::{Special, Specials};
+use endat_hdl::protocols::SsiSpec;
 use endat_sim::rng::Rng;
-use endat_sim::ssi::{Defect, EncoderConfig};
+use endat_sim::ssi::{Defect, EncoderConfig, Extra};
 use endat_sim::{Time, NS, US};
+use rtl_design::elaborate::elaborate;
 use rtl_design::kernel_engine;
 
 /// Frames of a recorded run.
@@ -20,6 +23,23 @@ struct Frames {
     waits_us: [u64; 2],
     rounds: usize,
     seed: u64,
+    /// What the port is made for.
+    asked: SsiSpec,
+}
+
+/// Special bits of an encoder, each of the levels now and then such that it is a cause.
+fn extras(specials: &Specials, rng: &mut Rng) -> Vec<Extra> {
+    let mut extra = |special: Special| match special {
+        Special::ParityEven => Extra::Parity(false),
+        Special::ParityOdd => Extra::Parity(true),
+        Special::Crc6 => Extra::Crc6,
+        special => {
+            let is_bad = rng.in_range(0, 7) == 0;
+            let level = special.cause().is_some_and(|(_, level)| level);
+            Extra::Level(level == is_bad)
+        }
+    };
+    specials.iter().map(&mut extra).collect()
 }
 
 /// Triggers at any time, defects, other settings.
@@ -30,7 +50,8 @@ fn recorded(frames: &Frames) -> Stimulus {
         tm: frames.tm,
         ..EncoderConfig::default()
     };
-    let mut bench = bench(&design(), 20_000_000, encoder, 60 * NS);
+    let design = elaborate(&block(&frames.asked), "encoder_port").unwrap();
+    let mut bench = bench(&design, 20_000_000, encoder, 60 * NS);
     bench.record_cycles();
     for (name, value) in [
         ("period_cycles", frames.period_cycles),
@@ -54,6 +75,8 @@ fn recorded(frames: &Frames) -> Stimulus {
             let odd = command >> frame::ODD & 1 == 1;
             let config = &mut link(&mut bench).encoder_mut().config;
             config.parity = (command >> frame::PARITY & 1 == 1).then_some(odd);
+            config.before = extras(&frames.asked.before, &mut rng);
+            config.after = extras(&frames.asked.after, &mut rng);
         }
         let copy = rng.in_range(0, 1) as usize;
         link(&mut bench).encoder_mut().config.defect = match rng.in_range(0, 7) {
@@ -83,16 +106,23 @@ fn recorded(frames: &Frames) -> Stimulus {
 }
 
 fn agree(name: &str, frames: &Frames, sequence_min: u128) {
-    let mut kernel = kernel_engine!(block(); clock;
+    let design = elaborate(&block(&frames.asked), "encoder_port").unwrap();
+    let mut kernel = kernel_engine!(block(&frames.asked); clock;
         in reset, tick_us, timestamp, trigger, calibrate, request_id, field_gap_us;
         out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, displaced, reply, calibrated, alarm;
         bundles line, settings, window, result, end, record);
-    let seen = three_way(name, &mut kernel, &design(), &recorded(frames)).unwrap();
+    let seen = three_way(name, &mut kernel, &design, &recorded(frames)).unwrap();
     assert!(*seen.output("sequence").last().unwrap() > sequence_min);
     let causes = seen.output("cause");
     for cause in 0..cause::COUNT {
-        let is_upset = cause == cause::UPSET;
-        assert_eq!(causes.contains(&cause.into()), !is_upset, "{cause}");
+        let comes = match cause {
+            cause::UPSET => false,
+            cause::ALARM.. => frames.asked.has_specials(),
+            // Those of the port alone are for the other run.
+            1.. if frames.asked.has_specials() => continue,
+            _ => true,
+        };
+        assert_eq!(causes.contains(&cause.into()), comes, "{cause}");
     }
     assert!(seen.output("fresh").contains(&1));
     assert!(
@@ -113,8 +143,36 @@ fn kernels_engines_and_verilog_agree_on_an_ssi_port() {
         rounds: 24,
         // Each cause comes.
         seed: 21,
+        asked: SsiSpec::default(),
     };
     agree("ssi_port", &short, 5);
+}
+
+/// Special bits of every kind, on both sides of the position.
+#[test]
+fn kernels_engines_and_verilog_agree_on_special_bits() {
+    let list = |specials: &[Special]| Specials::new(specials).unwrap();
+    let special = Frames {
+        position_bits: 4,
+        period_cycles: 13,
+        tm: 4 * US,
+        recovery_limit_cycles: 120,
+        waits_us: [14, 36],
+        rounds: 40,
+        seed: 4,
+        asked: SsiSpec {
+            before: list(&[Special::NotAlarm, Special::Ignored]),
+            after: list(&[
+                Special::PowerFail,
+                Special::Valid,
+                Special::Shown,
+                Special::ParityOdd,
+                Special::Crc6,
+            ]),
+            ..SsiSpec::default()
+        },
+    };
+    agree("ssi_special", &special, 5);
 }
 
 #[test]
@@ -128,6 +186,7 @@ fn kernels_engines_and_verilog_agree_on_longer_frames() {
         waits_us: [4, 70],
         rounds: 60,
         seed: 0,
+        asked: SsiSpec::default(),
     };
     agree("ssi_port_long", &long, 10);
 }
