@@ -80,6 +80,7 @@ mod tests {
                 age_us: 500,
                 stale: true,
                 recovery_cycles: 0x123,
+                special_bits: None,
                 fits: true,
                 infos: [
                     Info {

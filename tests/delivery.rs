@@ -25,6 +25,9 @@ mod bus {
     mod board;
     mod configuration;
 }
+mod ssi {
+    mod virtual_card;
+}
 mod stream {
     mod refusals;
 }
@@ -33,3 +36,7 @@ mod t_format {
         mod refusals;
     }
 }
+
+#[allow(dead_code)] // the tests of hosts/ take the rest
+#[path = "hosts/desk.rs"]
+mod desk;

@@ -16,10 +16,6 @@ mod sim;
 mod tools;
 mod view;
 
-mod ssi {
-    mod virtual_card;
-}
-
 /// These tests wait for programs more than they compute: twice as many at a time as the machine has cores.
 #[ctor::ctor(unsafe)]
 fn more_threads() {

@@ -88,7 +88,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "twice = false ",
             "command = \"111000\" ",
-            "is a key of EnDat, and this channel speaks SSI; remove it (SSI has code, parity, twice, clock_hz, ",
+            "is a key of EnDat, and this channel speaks SSI; remove it (SSI has code, parity, twice, bits_before, bits_after, end_low, clock_hz, ",
         ),
         (
             "twice = false ",

@@ -1,6 +1,6 @@
 //! Virtual cards whose encoders send bits that are not position, and what the program says of them.
 
-use crate::hosts::desk::Desk;
+use crate::desk::Desk;
 use crate::program::good;
 use endat_gen::config::{parse, Project};
 use endat_gen::virtual_card::VirtualConfig;

@@ -37,6 +37,14 @@ fn specials() -> Vec<Choice> {
     Special::ALL.map(choice).into()
 }
 
+/// Those that do not check what comes before them.
+fn specials_before() -> Vec<Choice> {
+    let plain = Special::ALL.into_iter().filter(|row| !row.0.is_check());
+    plain
+        .map(|(_, word, means)| Choice::new(word, means))
+        .collect()
+}
+
 keys! {
     /// All of them, in the order of the page.
     KEYS;
@@ -48,8 +56,8 @@ keys! {
         .note("for an encoder that repeats while the clock goes on (multiple transmission); a frame is twice as long")
         .of(SPEAKS_IT).usual(Usual::Boolean(false));
     BITS_BEFORE = Key::texts(CHANNEL, "bits_before", "bits before the position that are none of it, in the order in which they come")
-        .note("no more with those of `bits_after`, where a CRC counts as six; parity and CRC come after the position ([ssi.md](ssi.md#special-bits))")
-        .one_of(specials).repeating().at_most(SPECIALS_MAX).of(SPEAKS_IT);
+        .note("no more with those of `bits_after`, where a CRC counts as six ([ssi.md](ssi.md#special-bits))")
+        .one_of(specials_before).repeating().at_most(SPECIALS_MAX).of(SPEAKS_IT);
     BITS_AFTER = Key::texts(CHANNEL, "bits_after", "bits after the position, and after its parity bit")
         .one_of(specials).repeating().at_most(SPECIALS_MAX).of(SPEAKS_IT);
     END_LOW = Key::boolean(CHANNEL, "end_low", "whether DATA is LOW after the last bit until the recovery time is over")

@@ -78,7 +78,7 @@ pub struct SpecialBits {
     tail: Constant<Bits<6>>,
     stored_mask: Constant<Bits<14>>,
     first_mask: Constant<Bits<14>>,
-    shown_mask: Constant<Bits<14>>,
+    shown_mask: Constant<Bits<8>>,
     alarm_mask: Constant<Bits<14>>,
     alarm_low: Constant<Bits<14>>,
     power_fail_mask: Constant<Bits<14>>,
@@ -115,7 +115,7 @@ impl SpecialBits {
             tail: number(places.tail),
             stored_mask: mask((1 << places.stored) - 1),
             first_mask: mask((1 << places.stored) >> 1),
-            shown_mask: mask(shown & ((1 << SHOWN_MAX) - 1)),
+            shown_mask: Constant::new((shown & ((1 << SHOWN_MAX) - 1)).into()),
             alarm_mask: mask(alarm),
             alarm_low: mask(alarm_low),
             power_fail_mask: mask(power_fail),
@@ -212,7 +212,7 @@ impl Logic for SpecialBits {
                 | (bit_cast::<12, 3>(self.bad.val()) << 8)
                 | (bit_cast::<12, 1>(self.is_wrong.q.val().into()) << 11);
         }
-        self.shown.next = (self.status.q.val() & self.shown_mask.val()).get_bits::<8>(0);
+        self.shown.next = self.status.q.val().get_bits::<8>(0) & self.shown_mask.val();
     }
 }
 
