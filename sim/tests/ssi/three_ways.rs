@@ -114,10 +114,16 @@ fn agree(name: &str, frames: &Frames, sequence_min: u128) {
     let seen = three_way(name, &mut kernel, &design, &recorded(frames)).unwrap();
     assert!(*seen.output("sequence").last().unwrap() > sequence_min);
     let causes = seen.output("cause");
-    for cause in 0..cause::COUNT {
+    let flags = seen.output("flags");
+    for cause in cause::ALARM..cause::COUNT {
+        let comes = flags
+            .iter()
+            .any(|f| f & u128::from(cause::flag(cause)) != 0);
+        assert_eq!(comes, frames.asked.has_specials(), "{cause}");
+    }
+    for cause in 0..cause::ALARM {
         let comes = match cause {
             cause::UPSET => false,
-            cause::ALARM.. => frames.asked.has_specials(),
             // Those of the port alone are for the other run.
             1.. if frames.asked.has_specials() => continue,
             _ => true,
