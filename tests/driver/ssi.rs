@@ -36,8 +36,19 @@ fn the_c_driver_knows_what_each_channel_speaks() {
     let program = r#"
 #include "endat.h"
 #include "endat_internal.h"
+/* The same bits in status.line of every channel. */
+static endat_error burst(void *context, uint32_t address, uint32_t count, uint32_t *values)
+{
+    (void)context;
+    (void)address;
+    for (uint32_t n = 0u; n < count; n++) {
+        values[n] = (n % ENDAT_MAP_RESULT_STRIDE_WORDS == 0u) ? 0x12C00001u : 0u;
+    }
+    return ENDAT_OK;
+}
 int main(void)
 {
+    endat_moment moment;
     const uint32_t word = 0x02000001u; /* channel 0 T-format, channel 1 SSI */
     const uint32_t speaks[3] = {ENDAT_PROTOCOL_T_FORMAT, ENDAT_PROTOCOL_SSI, ENDAT_PROTOCOL_ENDAT};
     endat_card card = {0};
@@ -49,10 +60,16 @@ int main(void)
         wrong |= endat_needs_endat(&card, n) != (n == 2u ? ENDAT_OK : ENDAT_ERROR_PROTOCOL);
         wrong |= endat_needs_t_format(&card, n) != (n == 0u ? ENDAT_OK : ENDAT_ERROR_PROTOCOL);
     }
+    card.link.read_burst = burst;
+    wrong |= endat_read_moment(&card, &moment) != ENDAT_OK;
+    for (uint32_t n = 0u; n < 3u; n++) {
+        wrong |= moment.channel[n].special_bits != (n == 1u ? 0x12u : 0u);
+    }
     wrong |= endat_needs_endat(&card, 3u) != ENDAT_ERROR_ARGUMENT;
     wrong |= endat_cause_of(5u, ENDAT_PROTOCOL_ENDAT) != ENDAT_CAUSE_F1;
     wrong |= endat_cause_of(5u, ENDAT_PROTOCOL_SSI) != ENDAT_CAUSE_COPIES_DIFFER;
     wrong |= endat_cause_of(6u, ENDAT_PROTOCOL_SSI) != ENDAT_CAUSE_UPSET;
+    wrong |= endat_cause_of(10u, ENDAT_PROTOCOL_SSI) != ENDAT_CAUSE_POWER_FAIL;
     wrong |= endat_cause_of(5u, ENDAT_PROTOCOL_T_FORMAT) != ENDAT_CAUSE_CONTROL_PARITY;
     wrong |= endat_cause_of(30u, ENDAT_PROTOCOL_SSI) != 94u;
     return wrong;

@@ -75,6 +75,23 @@ fn special() -> Vec<Artifact> {
     emitted(32_000_000, &[&all, &held], APB)
 }
 
+/// Catches logic, or a line of text, that every SSI channel pays for.
+#[test]
+fn a_channel_without_special_bits_has_no_text_of_them() {
+    let text = |files: &[Artifact]| -> String {
+        let of = |f: &&Artifact| f.path.contains("ssi_port") || f.path.ends_with("_tb.v");
+        files.iter().filter(of).map(|f| f.text.clone()).collect()
+    };
+    let words = ["special", "shown", "holds_end", "HELD"];
+    let (none, all) = (narrow(), special());
+    assert!(!none.iter().any(|f| f.path.contains("special")));
+    assert!(all.iter().any(|f| f.path.ends_with("_special_bits.v")));
+    for word in words {
+        let is_there = (text(&none).contains(word), text(&all).contains(word));
+        assert_eq!(is_there, (false, true), "{word}");
+    }
+}
+
 #[test]
 fn it_passes_on_special_bits_and_fails_without_them() {
     let names = [

@@ -308,6 +308,22 @@ fn port_waits_out_the_recovery_time_of_an_encoder_that_keeps_its_last_bit() {
         assert_eq!(run.get("position_valid"), 0);
         assert_eq!(run.get("cause"), u128::from(cause::RECOVERY_TOO_LONG));
     }
+    // An open plug looks like a position of ones, but for a special bit. With an end that is LOW it has a cause.
+    let open = EncoderConfig {
+        defect: Defect::Silent,
+        position_bits: 12,
+        ..EncoderConfig::default()
+    };
+    let mut run = start(&asked, open.clone());
+    assert_eq!(frame(&mut run), (0, 0, 0, Some(0xFFF)));
+    let with_alarm = SsiSpec {
+        after: list(&[NotValid]),
+        ..asked
+    };
+    let mut run = start(&with_alarm, open.clone());
+    assert_eq!(frame(&mut run).0, cause::NOT_VALID);
+    let mut run = start(&SsiSpec::default(), open);
+    assert_eq!(frame(&mut run).0, cause::DATA_NOT_LOW_AFTER);
     // A port that expects LOW takes no odd position of such an encoder.
     let encoder = EncoderConfig {
         position: 1,
