@@ -23,7 +23,6 @@ mod service {
 }
 mod ssi {
     mod card;
-    mod special;
 }
 mod stream {
     mod infos;

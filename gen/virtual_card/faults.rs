@@ -18,7 +18,7 @@ pub const FAULTS: [(&str, &str, &str); 13] = [
     ("f2", "CHANNEL [N]", "error bit F2 in the next N frames [1]"),
     ("silent", "CHANNEL [N]", "no start bit in the next N frames [1]"),
     ("slow", "CHANNEL TIME", "the encoder calculates so much longer, as in 30us, until heal"),
-    ("alarm", "CHANNEL [BITS]", "alarms, bit 0 light source to 6 battery [1], until they are cleared"),
+    ("alarm", "CHANNEL [BITS]", "alarms, bit 0 light source to 6 battery [1], until they are cleared; of SSI bit 0 alarm, 1 power failure, 2 not valid, until heal"),
     ("warning", "CHANNEL [BITS]", "the same with warnings"),
     ("noise", "CHANNEL RATE", "short pulses on DATA, so many per microsecond, as in 1e-3, until heal"),
     ("jitter", "CHANNEL TIME", "edges come up to so much earlier or later, as in 20ns, until heal"),

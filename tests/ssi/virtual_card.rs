@@ -15,9 +15,10 @@ fn project(name: &str) -> Project {
     parse(name, &std::fs::read_to_string(file(name)).unwrap()).unwrap()
 }
 
-/// A virtual card has the encoder of its configuration; each of its alarms is a cause by name, and so is a spoilt CRC.
+/// Catches a special bit in the position. A virtual card has the encoder of its configuration; each of its alarms is a cause by name, and so is
+/// a spoilt CRC.
 #[test]
-fn alarms_of_a_virtual_encoder_have_their_causes() {
+fn virtual_encoders_show_the_position_alone_and_their_alarms() {
     for (name, special, faults) in [
         ("el5001", 0, &[("alarm 0 2", "power_fail")][..]),
         ("epos4", 0, &[]),
@@ -40,7 +41,11 @@ fn alarms_of_a_virtual_encoder_have_their_causes() {
             ],
         ),
     ] {
-        let mut desk = Desk::new(&project(name), &VirtualConfig::default());
+        let still = VirtualConfig {
+            speed: 0.0,
+            ..VirtualConfig::default()
+        };
+        let mut desk = Desk::new(&project(name), &still);
         desk.run_ms(1);
         let measure = |desk: &mut Desk| {
             desk.set("card.trigger_now", 1);
@@ -50,6 +55,9 @@ fn alarms_of_a_virtual_encoder_have_their_causes() {
         let first = measure(&mut desk);
         assert!(first.fresh && first.cause == 0, "{name}: {first:?}");
         assert_eq!(first.special_bits, Some(special), "{name}");
+        // A tenth of a turn, of 12 or 13 bits.
+        let tenth = if name == "as5045" { 409 } else { 819 };
+        assert_eq!(first.position, tenth, "{name}");
         for (fault, cause) in faults {
             desk.card.bridge().transport().inject(fault).unwrap();
             let reading = measure(&mut desk);
