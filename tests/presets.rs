@@ -12,7 +12,7 @@ use endat_hdl::config::{CardConfig, ChannelConfig, StreamStart, DELAY_NS_PER_M};
 use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS};
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::protocols::ssi::{asked::Parity, protocol::BIT_DELAY_NS};
+use endat_hdl::protocols::ssi::{asked::Parity, protocol::BIT_DELAY_NS, specials::Specials};
 use endat_hdl::protocols::t_format::protocol::RATE_TOLERANCE_PPM;
 use endat_hdl::regs::Protocol;
 use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
@@ -109,7 +109,16 @@ fn t_format_encoder(channel: &ChannelConfig, corner: Corner) -> t_format::Encode
 fn ssi_link(channel: &ChannelConfig, corner: Corner) -> SsiLink {
     let asked = channel.spoken.ssi().unwrap();
     let spec = &channel.spec;
+    // No preset has a parity or CRC among them.
+    let well = |specials: &Specials| {
+        let levels = specials
+            .iter()
+            .map(|s| s.cause().is_some_and(|(_, bad)| !bad));
+        levels.map(ssi::Extra::Level).collect()
+    };
     let config = ssi::EncoderConfig {
+        before: well(&asked.before),
+        after: well(&asked.after),
         position_bits: channel.position_bits,
         gray: asked.gray,
         repeats: asked.twice,
