@@ -66,6 +66,9 @@ impl Spoken {
     }
 }
 
+/// Slowest clock of those that have one, in hertz.
+pub(crate) const CLOCK_HZ_MIN: u64 = ssi::protocol::CLOCK_HZ_MIN;
+
 /// Range of a key that only one of the other protocols has.
 pub(crate) fn range(key: &str) -> Option<RangeInclusive<u64>> {
     [t_format::asked::range, ssi::asked::range]

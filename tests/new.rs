@@ -31,7 +31,7 @@ fn text(bytes: &[u8]) -> String {
 /// Every way through the questions that asks something else.
 fn ways() -> Vec<Vec<String>> {
     let mut ways = Vec::new();
-    for protocol in ["endat", "t_format"] {
+    for protocol in ["endat", "t_format", "ssi"] {
         for bus in [
             "uart", "apb", "wishbone", "axi_lite", "spi", "parallel", "none", "dsp",
         ] {
@@ -42,7 +42,7 @@ fn ways() -> Vec<Vec<String>> {
             };
             for board in boards
                 .iter()
-                .filter(|_| (protocol, bus) != ("endat", "dsp"))
+                .filter(|_| protocol == "t_format" || bus != "dsp")
             {
                 let mut way = vec![
                     "--protocol".into(),
@@ -242,4 +242,52 @@ fn board_goes_with_every_bus_or_the_error_names_buses_that_have_one() {
             assert_eq!(new(other, "papilio_pro").exit_code, 0, "{other}");
         }
     }
+}
+
+/// Catches a clock that the help offers and the command refuses, and a remedy that is no option of it.
+#[test]
+fn slow_and_fast_ssi_clocks_give_a_file_or_a_remedy_that_is_an_option() {
+    let new = |more: &[&str]| {
+        let first = ["new", "-", "--yes", "--protocol", "ssi"];
+        run(&[&first[..], &["--position-bits", "12"], more].concat())
+    };
+    for hz in ["80_000", "100000", "125000", "133333", "1000000"] {
+        let made = new(&["--clock-hz", hz]);
+        assert_eq!(made.exit_code, 0, "{hz}: {made:?}");
+        parse_any("new.toml", &made.stdout).unwrap_or_else(|e| panic!("{hz}: {e:?}"));
+    }
+    let made = new(&[
+        "--clock-hz",
+        "100000",
+        "--recovery-min-ns",
+        "16000",
+        "--recovery-max-ns",
+        "40000",
+    ]);
+    assert!(
+        made.stdout.contains("\nrecovery_min_ns = 16_000\n"),
+        "{made:?}"
+    );
+    assert!(
+        made.stdout.contains("\nrecovery_max_ns = 40_000\n"),
+        "{made:?}"
+    );
+    let refused = new(&["--clock-hz", "4000000", "--cable-m", "2"]);
+    let told = refused.messages.join("\n");
+    assert!(
+        told.ends_with("or lower --bit-delay-ns to 170, if that is the encoder's"),
+        "{told}"
+    );
+    let made = new(&[
+        "--clock-hz",
+        "4000000",
+        "--cable-m",
+        "2",
+        "--bit-delay-ns",
+        "170",
+    ]);
+    assert!(made.stdout.contains("\nbit_delay_ns = 170\n"), "{made:?}");
+    let refused = new(&["--clock-hz", "100000", "--recovery-min-ns", "10000"]);
+    let told = refused.messages.join("\n");
+    assert!(told.contains("raise --recovery-min-ns to 15000"), "{told}");
 }

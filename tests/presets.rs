@@ -12,7 +12,7 @@ use endat_hdl::config::{CardConfig, ChannelConfig, StreamStart, DELAY_NS_PER_M};
 use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS};
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::protocols::ssi::{asked::Parity, protocol::BIT_DELAY_NS, specials::Specials};
+use endat_hdl::protocols::ssi::{asked::Parity, specials::Specials};
 use endat_hdl::protocols::t_format::protocol::RATE_TOLERANCE_PPM;
 use endat_hdl::regs::Protocol;
 use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
@@ -128,7 +128,12 @@ fn ssi_link(channel: &ChannelConfig, corner: Corner) -> SsiLink {
                 true => spec.recovery_max_ns,
                 false => spec.recovery_min_ns,
             },
-        bit_delay: NS * if corner.tcal_long { BIT_DELAY_NS } else { 10 },
+        bit_delay: NS
+            * if corner.tcal_long {
+                asked.bit_delay_ns
+            } else {
+                10
+            },
         ..ssi::EncoderConfig::default()
     };
     // Each way.

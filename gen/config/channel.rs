@@ -5,7 +5,7 @@ use super::reader::{At, Table};
 use super::trigger;
 use crate::form::key::Key;
 use crate::other_protocol::Other;
-use endat_hdl::config::{ChannelSpec, START_WINDOW_BITS};
+use endat_hdl::config::{limits, ChannelSpec, START_WINDOW_BITS};
 use endat_hdl::endat::timing::cycles_at_most;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::protocols::Spoken;
@@ -37,7 +37,7 @@ pub type LineKeys = BTreeMap<&'static str, Option<(String, At<u64>)>>;
 
 pub fn read_line_keys(table: &Table<'_, '_>, system_hz: Option<u64>) -> LineKeys {
     let written = of_lines().filter_map(|key| {
-        let value = table.integer(key, &key.limits(system_hz));
+        let value = table.integer(key, &limits(key.name, system_hz));
         let place = |at| (table.name(key.name), at);
         table.has(key.name).then(|| (key.name, value.map(place)))
     });
@@ -59,7 +59,7 @@ pub fn check_overridden(
             |channel: &Channel| channel.places.get(key.name).is_some_and(|(p, _)| p == path);
         // One that could not be read may take it.
         if !channels.iter().any(|c| c.as_ref().is_none_or(takes)) {
-            table.check(key, at, &key.limits(system_hz));
+            table.check(key, at, &limits(key.name, system_hz));
         }
     }
 }
@@ -94,7 +94,7 @@ pub fn read_endat(
             Some((key, at))
         });
         for (key, at) in read.chain(position.iter().map(|at| (&POSITION_BITS, at))) {
-            table.check(key, at, &key.limits(system_hz));
+            table.check(key, at, &limits(key.name, system_hz));
         }
     }
     let (encoder, position, command) = (encoder?, position?, command?);

@@ -13,6 +13,7 @@ use endat_hdl::card::stream::buffer::BUFFER_BYTES;
 use endat_hdl::config::{ERROR_TEST_MS, LIST};
 use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use endat_regs::{Protocol, MAP_BYTES};
+pub use ssi::BIT_DELAY;
 use std::ops::RangeInclusive;
 
 /// The table that says for all channels what they do not say themselves.
@@ -61,7 +62,8 @@ keys! {
         .note("as far as the board's clock manager makes it").of(CARD_FORM).required("100_000_000");
 
     CLOCK_HZ = Key::number(EITHER, "clock_hz", "clock on the line")
-        .note("period 4 to 2047 system cycles (8 with continuous clock; also 2 with `double_edge` and without requests), within 5000 ppm; \
+        .within(|_, _| endat_hdl::config::clock_limits())
+        .note("below 100 kHz with SSI only; period 4 to 2047 system cycles (8 with continuous clock; also 2 with `double_edge` and without requests), within 5000 ppm; \
                may be left out in `[endat]` if each channel has its own")
         .of(CLOCKED).required("3_125_000");
     CALIBRATION_HZ = Key::number(EITHER, "calibration_hz", "EnDat clock of the frames that measure the line delay")

@@ -37,7 +37,7 @@ impl ChannelConfig {
         );
         check_recovery(check, request, recovery_most_ns(system_hz, cable_m));
         let period = clock_good
-            .then(|| check_clock(check, request.clock_hz, system_hz, double_edge))
+            .then(|| check_clock(check, request.clock_hz, system_hz, Some(double_edge)))
             .flatten();
         period.map(|period_cycles| {
             let half = period_cycles / 2;
@@ -236,23 +236,24 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec, most_ns: u64) {
 }
 
 /// Whether the shorter half of a period is too short for an encoder.
-const fn is_uneven(period: u64) -> bool {
+pub(crate) const fn is_uneven(period: u64) -> bool {
     100 * (period / 2) < (50 - PULSE_TOLERANCE_PERCENT) * period
 }
 
-/// The period in cycles, if the rate can be made well enough.
+/// The period in cycles, if the rate can be made well enough; no `double_edge` where the protocol has no such part.
 pub(crate) fn check_clock(
     check: &mut Check<'_>,
     clock_hz: u64,
     system_hz: u64,
-    double_edge: bool,
+    double_edge: Option<bool>,
 ) -> Option<u64> {
     let period = period_cycles(clock_hz, system_hz);
     let (cycles_min, remedy) = match double_edge {
-        true => (PERIOD_CYCLES_MIN_DOUBLE, ""),
+        Some(true) => (PERIOD_CYCLES_MIN_DOUBLE, ""),
+        None => (PERIOD_CYCLES_MIN, ""),
         // Nothing is proposed that would be refused itself.
-        false if period < PERIOD_CYCLES_MIN_DOUBLE => (PERIOD_CYCLES_MIN, ""),
-        false => (
+        Some(false) if period < PERIOD_CYCLES_MIN_DOUBLE => (PERIOD_CYCLES_MIN, ""),
+        Some(false) => (
             PERIOD_CYCLES_MIN,
             ", or line.parts = [\"alignment\", \"double_edge\"], which needs half of that on a card without requests",
         ),

@@ -73,6 +73,12 @@ impl fmt::Display for Limits {
     }
 }
 
+/// What `clock_hz` may be on the line of any protocol.
+pub fn clock_limits() -> Limits {
+    let slowest = ENDAT_HZ_MIN.min(protocols::CLOCK_HZ_MIN);
+    Limits::new(slowest..=ENDAT_HZ_MAX)
+}
+
 /// What a key may be at this system clock, or at any when it is not known.
 pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
     let (slow, fast) = system_hz.map_or((SYSTEM_HZ_MIN, SYSTEM_HZ_MAX), |hz| (hz, hz));
@@ -132,7 +138,7 @@ fn cable_most_m(system_hz: u64) -> u64 {
 }
 
 /// Longest recovery time that can be timed behind this cable.
-pub(super) fn recovery_most_ns(system_hz: u64, cable_m: u64) -> u64 {
+pub(crate) fn recovery_most_ns(system_hz: u64, cable_m: u64) -> u64 {
     let cycles = max_of(RECOVERY_LIMIT_BITS) - INPUT_LATENCY_CYCLES;
     cycles_at_most_ns(cycles, system_hz) - delay_max_ns(cable_m)
 }

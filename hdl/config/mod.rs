@@ -15,8 +15,9 @@ mod spoken;
 
 pub(crate) use card::{frame_too_long, microseconds, TooLong};
 pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
-pub(crate) use channel::{check_clock, check_filter, check_tst};
-pub use limits::{limits, Limits};
+pub(crate) use channel::{check_clock, check_filter, check_tst, is_uneven};
+pub(crate) use limits::recovery_most_ns;
+pub use limits::{clock_limits, limits, Limits};
 pub use parts::{
     LineParts, OutputParts, PhaseSource, SafetyParts, ServiceParts, StreamParts, StreamStart,
     ERROR_TEST_MS,

@@ -110,6 +110,21 @@ fn it_fails_on_every_broken_port_with_special_bits() {
     check_mutations("ssi-specials", &special(), SPECIAL_MUTATIONS);
 }
 
+/// Catches an encoder of the bench with a delay of its own, and a port that takes bits too soon for it.
+#[test]
+fn the_bench_has_encoders_as_late_as_configured_and_passes() {
+    let late =
+        format!("{SSI}position_bits = 5\nclock_hz = 1_000_000\ncable_m = 0\nbit_delay_ns = 800\n");
+    let soon =
+        format!("{SSI}position_bits = 4\nclock_hz = 2_000_000\ncable_m = 5\nbit_delay_ns = 150\n");
+    let files = emitted(32_000_000, &[&late, &soon], APB);
+    let bench = files.iter().find(|f| f.path.ends_with("_tb.v")).unwrap();
+    for delay in [".BIT_DELAY_NS(800.0)", ".BIT_DELAY_NS(150.0)"] {
+        assert!(bench.text.contains(delay), "{delay}");
+    }
+    bench_passes("ssi-delays", &files, &[]);
+}
+
 #[test]
 #[ignore = "slow: every mutation of the SSI port"]
 fn it_fails_on_every_broken_port() {

@@ -115,6 +115,44 @@ fn a_card_reads_endat_and_ssi_together() {
     }
 }
 
+/// Catches an encoder that answers sooner than its channel allows it, and a card that does not wait for it.
+#[test]
+fn card_reads_encoders_that_answer_as_late_as_configured() {
+    for (bits, hz, cable_m, delay_ns) in [
+        (19, 2_500_000, 2, 320),
+        (12, 4_000_000, 0, 190),
+        (12, 80_000, 100, 10_000),
+    ] {
+        let text = format!(
+            "name = \"late\"\n[clock]\nsystem_hz = 100_000_000\n[[channel]]\nprotocol = \"ssi\"\nposition_bits = {bits}\n\
+             clock_hz = {hz}\ncable_m = {cable_m}\nbit_delay_ns = {delay_ns}\nrecovery_min_ns = 19_000\n\
+             [trigger]\nsample_hz = 500\nsources = [\"register\"]\n[host]\nbus = \"apb\"\n"
+        );
+        let project = parse("late.toml", &text).unwrap();
+        let mut master = Master::at_channels(&project, &[]);
+        let config = EncoderConfig {
+            position_bits: bits,
+            repeats: false,
+            bit_delay: delay_ns * NS,
+            pulse_min: 100 * NS,
+            ..EncoderConfig::default()
+        };
+        let mut link = SsiLink::new(config, cable_m * 5 * NS);
+        link.set_motion(Arc::new(shaft));
+        master.bench.add_other(&PinNames::card(0), Box::new(link));
+        master.bench.run_for(60 * US);
+        for _ in 0..4 {
+            master.write(at(&CARD, "trigger_now", 0), 1);
+            master.bench.run_for(300 * US);
+            let link = master.bench.others_as_mut::<SsiLink>().next().unwrap();
+            let is = link.encoder().config.position;
+            let (cause, fresh, position, _) = result(&mut master, 0);
+            assert_eq!((cause, fresh, position), (cause::NONE, true, is), "{hz}");
+        }
+        assert_eq!(master.bench.others().next().unwrap().complaints(), [""; 0]);
+    }
+}
+
 /// A reset of the card in the middle of a frame, and a trigger of the host soon after it.
 #[test]
 fn card_shows_no_wrong_ssi_position_after_a_reset() {

@@ -58,12 +58,12 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "clock_hz = 1_000_000 ",
             "clock_hz = 2_000_000 ",
-            "ssi.toml:14: channel[0].clock_hz = 2000000: a bit takes up to 700 ns of a period from its clock edge (400 ns in the encoder, the rest in 30 m of cable), and the input 11 cycles; use at most 1234567 Hz, or a shorter cable_m",
+            "ssi.toml:14: channel[0].clock_hz = 2000000: a bit takes up to 700 ns of a period from its clock edge (400 ns in the encoder, the rest in 30 m of cable), and the input 11 cycles; use at most 1234567 Hz, or lower bit_delay_ns to 90, if that is the encoder's",
         ),
         (
             "clock_hz = 1_000_000 ",
             "clock_hz = 125_000 ",
-            "ssi.toml:14: channel[0].clock_hz = 125000: the LOW behind the last bit is looked at 12000 ns after the last falling edge, recovery_min_ns = 10000 ends it sooner; use at least 150000 Hz, or raise recovery_min_ns to the encoder's",
+            "ssi.toml:14: channel[0].clock_hz = 125000: the LOW behind the last bit is looked at 12000 ns after the last falling edge, recovery_min_ns = 10000 ends it sooner; use at least 150151 Hz, or raise recovery_min_ns to 12000, if the encoder's is as long",
         ),
         (
             "code = \"gray\" ",
@@ -88,7 +88,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "twice = false ",
             "command = \"111000\" ",
-            "is a key of EnDat, and this channel speaks SSI; remove it (SSI has code, parity, twice, bits_before, bits_after, end_low, clock_hz, ",
+            "is a key of EnDat, and this channel speaks SSI; remove it (SSI has code, parity, bit_delay_ns, twice, bits_before, bits_after, end_low, clock_hz, ",
         ),
         (
             "twice = false ",
@@ -110,8 +110,92 @@ fn mistakes_are_told_with_line_and_remedy() {
         assert!(told.contains(is), "{told}");
         assert_eq!(told.lines().count(), 1, "{told}");
     }
+    for (delay, is) in [
+        (
+            "10_001 ",
+            "channel[0].bit_delay_ns = 10001: outside 0..10000; choose a value in that range",
+        ),
+        (
+            "610 ",
+            "(610 ns in the encoder, the rest in 30 m of cable), and the input 11 cycles; use at most 980392 Hz, or lower cable_m to 28, or lower bit_delay_ns to 590, if that is the encoder's",
+        ),
+    ] {
+        let told = complaint(&changed("twice = false ", &format!("bit_delay_ns = {delay}")));
+        assert!(told.contains(is), "{told}");
+        assert_eq!(told.lines().count(), 1, "{told}");
+    }
     let missing = changed("clock_hz = 1_000_000 ", "# ");
     assert!(complaint(&missing).contains("channel[0].clock_hz: is missing"));
+}
+
+/// An SSI channel at 100 MHz, on a card without a UART.
+fn single(keys: &str) -> String {
+    format!(
+        "name = \"single\"\n[clock]\nsystem_hz = 100_000_000\n[[channel]]\nprotocol = \"ssi\"\n{keys}\
+         [trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n"
+    )
+}
+
+/// Catches a delay of the encoder that is fixed, and a limit of the clock that is EnDat's.
+#[test]
+fn channel_takes_the_encoders_own_delay_and_clocks_from_80_khz_to_4_mhz() {
+    for (keys, most_ns) in [
+        (
+            "position_bits = 19\nclock_hz = 2_500_000\ncable_m = 2\n",
+            320,
+        ),
+        (
+            "position_bits = 12\nclock_hz = 4_000_000\ncable_m = 0\n",
+            190,
+        ),
+    ] {
+        assert!(
+            complaint(&single(keys)).contains("400 ns in the encoder"),
+            "{keys}"
+        );
+        let with = |ns: u64| single(&format!("{keys}bit_delay_ns = {ns}\n"));
+        let card = parse("single.toml", &with(most_ns)).unwrap();
+        let told = endat_gen::explain::report(&card).to_string();
+        let line = format!("; {most_ns} ns in the encoder and ");
+        assert!(told.contains(&line), "{told}");
+        let refused = complaint(&with(most_ns + 1));
+        let remedy = format!("lower bit_delay_ns to {most_ns}, if that is the encoder's");
+        assert!(refused.contains(&remedy), "{refused}");
+    }
+    let slow = |hz: u64| {
+        single(&format!(
+            "position_bits = 48\nclock_hz = {hz}\nrecovery_min_ns = 18_750\n"
+        ))
+    };
+    let card = parse("single.toml", &slow(80_000)).unwrap();
+    assert_eq!(card.card.channels[0].period_cycles, 1_250);
+    let refused = complaint(&slow(79_999));
+    assert!(
+        refused.contains("clock_hz = 79999: outside 80000..16000000"),
+        "{refused}"
+    );
+}
+
+/// Catches a recovery time that fits its counter only without the cable.
+#[test]
+fn recovery_time_and_cable_are_limited_together() {
+    let keys = |ns: u64| {
+        let keys = format!("position_bits = 12\nclock_hz = 80_000\ncable_m = 780\nrecovery_min_ns = 20_000\nrecovery_max_ns = {ns}\n");
+        single(&keys)
+    };
+    let refused = complaint(&keys(81_000));
+    let (_, limit) = refused.split_once("outside 1250..").expect(&refused);
+    let most = limit
+        .split(' ')
+        .next()
+        .and_then(|n| n.parse().ok())
+        .unwrap();
+    let card = parse("single.toml", &keys(most)).unwrap();
+    let cycles = card.card.channels[0].recovery_limit_cycles;
+    assert!(
+        cycles < 1 << endat_hdl::config::RECOVERY_LIMIT_BITS,
+        "{cycles}"
+    );
 }
 
 /// Catches a number that the hash of a card leaves out, and one that it has without need.
@@ -138,6 +222,8 @@ fn the_hash_is_of_what_decides() {
         ("encoder = \"EQN 425, SSI\" ", "encoder = \"another\" "),
         ("code = \"binary\" ", "#"),
         ("clock_hz = 1_000_000 ", "clock_hz = 1_000_001 "),
+        // It is checked only.
+        ("code = \"binary\" ", "bit_delay_ns = 300 "),
     ] {
         assert_eq!(hash(&changed(from, to)), is, "{to}");
     }

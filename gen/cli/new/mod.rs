@@ -8,7 +8,7 @@ use super::Outcome;
 use crate::config;
 use crate::error::{shown, GenError};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
-use questions::{buses_of_boards, Answers, Question, NO_BOARD, QUESTIONS};
+use questions::{buses_of_boards, Answers, Of, Question, NO_BOARD, QUESTIONS};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -115,10 +115,27 @@ fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
         };
         let next = left.iter().copied().find(is_about);
         let Some(next) = next.or_else(|| left.iter().copied().find(is_named)) else {
-            return Err(wrong.into_iter().map(|one| one.text).collect());
+            let texts = wrong.into_iter().map(|one| in_options(&one.text));
+            return Err(texts.collect());
         };
         *tried.entry(next.name).or_default() += 1;
     }
+}
+
+/// A complaint whose remedy names options in the place of keys.
+fn in_options(text: &str) -> String {
+    let Some((what, remedy)) = text.rsplit_once("; ") else {
+        return text.to_owned();
+    };
+    let named = |word: &str| {
+        let question = QUESTIONS.iter().find(|q| match q.of {
+            Of::Key(key, _) => key.name == word && q.name.replace('-', "_") == word,
+            Of::Channels => false,
+        });
+        question.map_or_else(|| word.to_owned(), |q| format!("--{}", q.name))
+    };
+    let words: Vec<String> = remedy.split(' ').map(named).collect();
+    format!("{what}; {}", words.join(" "))
 }
 
 /// Asks until the answer goes with those before it.

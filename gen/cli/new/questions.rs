@@ -5,8 +5,10 @@ use crate::config::keys::{self, Key, TABLES};
 use crate::config::words::RECEIVER_BUS;
 use crate::form::key::Kind;
 use crate::json_schema::plain;
+use crate::number::number;
 use crate::protocols::t_format::keys::BIT_RATE;
 use endat_hdl::card::bus::HostBus;
+use endat_hdl::endat::timing::{cycles_to_ns, period_cycles};
 use endat_regs::Protocol;
 use std::collections::BTreeMap;
 
@@ -120,6 +122,22 @@ fn of_board(answers: &Answers, own: fn(&crate::board::Start) -> u64, usual: &[u6
     all.map(|n| n.to_string()).collect()
 }
 
+/// What was answered, if it is a number.
+fn value(told: &str) -> Option<u64> {
+    number("", told, 0..=u64::MAX).ok()
+}
+
+/// How long a recovery time must be, so that the end of a frame is seen: one and a half periods of the clock, in ns. An encoder with a
+/// shorter one cannot be read at that clock.
+fn lasting_ns(answers: &Answers) -> u64 {
+    let hz = |name: &str| answers.get(name).and_then(|told| value(told));
+    let (Some(system_hz @ 1..), Some(clock_hz @ 1..)) = (hz("system-hz"), hz("clock-hz")) else {
+        return 0;
+    };
+    let period = period_cycles(clock_hz, system_hz);
+    cycles_to_ns(period / 2 + period, system_hz)
+}
+
 fn numbers(all: &[u64]) -> Vec<String> {
     all.iter().map(u64::to_string).collect()
 }
@@ -206,6 +224,31 @@ pub static QUESTIONS: &[Question] = &[
         of: Of::Key(&keys::CABLE, keys::COMMON),
         is_asked: |answers| is_of_form(&keys::CABLE, answers),
         usual: |_| numbers(&[keys::CABLE.usual_number(), 10, 0]),
+    },
+    Question {
+        name: "recovery-min-ns",
+        of: Of::Key(&keys::RECOVERY_MIN, keys::COMMON),
+        is_asked: |answers| is_of_form(&keys::BIT_DELAY, answers),
+        usual: |answers| {
+            let least = keys::RECOVERY_MIN.usual_number();
+            numbers(&[least.max(lasting_ns(answers)), least])
+        },
+    },
+    Question {
+        name: "recovery-max-ns",
+        of: Of::Key(&keys::RECOVERY_MAX, keys::COMMON),
+        is_asked: |answers| is_of_form(&keys::BIT_DELAY, answers),
+        usual: |answers| {
+            let most = keys::RECOVERY_MAX.usual_number();
+            let least = answers.get("recovery-min-ns").and_then(|told| value(told));
+            numbers(&[most.max(least.unwrap_or(0)), most])
+        },
+    },
+    Question {
+        name: "bit-delay-ns",
+        of: Of::Key(&keys::BIT_DELAY, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&keys::BIT_DELAY, answers),
+        usual: |_| numbers(&[keys::BIT_DELAY.usual_number()]),
     },
     Question {
         name: "bit-hz",

@@ -19,8 +19,6 @@ use serde::Serialize;
 
 /// After a frame that went wrong the line is HIGH at the latest after this beyond the recovery time, in ns.
 pub(crate) const IDLE_NS: u64 = 0;
-/// The encoders' own share of the delay of a bit, in ns.
-const BIT_DELAY_NS: u64 = 100;
 
 /// A channel and the encoder on it.
 #[derive(Serialize)]
@@ -56,8 +54,11 @@ impl Port {
         let ns = |cycles: u64| cycles_to_ns(cycles, card.system_hz);
         let most_ns =
             bit_delay_most_ns(channel.period_cycles, channel.filter_cycles, card.system_hz);
-        // The longest cable that is allowed for: both ways belong to the delay of a bit.
-        let cable_ns = (most_ns - BIT_DELAY_NS) as f64 / 2.0;
+        // The encoder is as slow as it may be, and the cable, both ways, takes the rest of the period, but for a little: no bit changes in the
+        // very moment in which it is taken.
+        let left_ns = most_ns as f64 - asked.bit_delay_ns as f64 - 1.4;
+        let cable_ns = (left_ns / 2.0).max(0.0);
+        let bit_delay_ns = asked.bit_delay_ns as f64 + left_ns.min(0.0);
         Self {
             index,
             position_bits: channel.position_bits,
@@ -76,10 +77,10 @@ impl Port {
                     .iter()
                     .any(|s| s.is_check() && s != Special::Crc6),
             held: asked.holds_end.into(),
-            bit_delay_ns: whole(BIT_DELAY_NS),
+            bit_delay_ns: real(bit_delay_ns.max(0.0)),
             tm_ns: whole(channel.spec.recovery_max_ns),
             late_ns: whole(late_ns(card, channel)),
-            cable_ns: real(cable_ns.floor() - 0.7),
+            cable_ns: real(cable_ns),
             half_ns: whole(ns(channel.period_cycles / 2)),
             first_low_ns: whole(ns(
                 channel.period_cycles / 2 + channel.first_low_extra_cycles

@@ -2,7 +2,7 @@
 
 use crate::explain::rate::{rate, us_of, Rate};
 use crate::other_protocol::OtherReport;
-use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::config::{CardConfig, ChannelConfig, DELAY_NS_PER_M};
 use endat_hdl::protocols::ssi::protocol::bit_delay_most_ns;
 use endat_hdl::protocols::ssi::specials::Special;
 use endat_hdl::protocols::SsiSpec;
@@ -41,8 +41,12 @@ pub struct SsiReport {
     pub clocks: u64,
     /// From its first edge to the result, in microseconds.
     pub frame_us: f64,
-    /// Longest time from a clock edge to its bit, both ways along the cable included, in ns.
+    /// Longest time from a clock edge to its bit that the port takes, both ways along the cable included, in ns.
     pub bit_delay_max_ns: u64,
+    /// How much of it the encoder needs, in ns.
+    pub bit_delay_ns: u64,
+    /// And the longest cable, both ways, in ns.
+    pub cable_ns: u64,
     /// Longest recovery time (monoflop time), in microseconds.
     pub recovery_max_us: f64,
     /// Both, and the cable: what the configuration is checked against, in microseconds.
@@ -82,6 +86,8 @@ impl SsiReport {
                 config.filter_cycles,
                 card.system_hz,
             ),
+            bit_delay_ns: asked.bit_delay_ns,
+            cable_ns: DELAY_NS_PER_M * config.spec.cable_m,
             recovery_max_us: config.spec.recovery_max_ns as f64 / 1e3,
             cycle_us,
             worst_case_sampling_hz: 1e6 / cycle_us,
@@ -152,8 +158,8 @@ impl SsiReport {
         }
         writeln!(
             f,
-            "  bits             taken up to {} ns after their clock edge, cable both ways included",
-            self.bit_delay_max_ns
+            "  bits             taken up to {} ns after their clock edge; {} ns in the encoder and {} ns in the cable, both ways, are needed",
+            self.bit_delay_max_ns, self.bit_delay_ns, self.cable_ns
         )?;
         writeln!(
             f,

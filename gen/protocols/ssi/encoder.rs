@@ -2,7 +2,7 @@
 
 use crate::other_protocol::{OtherFaults, Plugged, Spoilt};
 use crate::virtual_card::deed::Deed;
-use crate::virtual_card::settings::{VirtualConfig, NS_PER_M, SECOND};
+use crate::virtual_card::settings::{VirtualConfig, CABLE_M, NS_PER_M, SECOND};
 use endat_hdl::config::ChannelConfig;
 use endat_hdl::protocols::ssi::asked::Parity;
 use endat_hdl::protocols::ssi::cause;
@@ -74,6 +74,7 @@ fn fitting(channel: &ChannelConfig, asked: &SsiSpec, seed: u64) -> EncoderConfig
         repeats: asked.twice,
         // Well within what is allowed, and longer than any clock's pause.
         tm: tm * 3 / 4,
+        bit_delay: asked.bit_delay_ns * NS,
         seed,
         ..EncoderConfig::default()
     }
@@ -98,16 +99,20 @@ pub(crate) fn plug(
     is_open: bool,
     config: &VirtualConfig,
 ) -> Plugged {
+    let jitter = config.jitter_ns as Time * NS;
+    let fitting = fitting(channel, asked, config.seed.wrapping_add(n as u64));
     let encoder = EncoderConfig {
-        jitter: config.jitter_ns as Time * NS,
-        ..fitting(channel, asked, config.seed.wrapping_add(n as u64))
+        jitter,
+        // With it a bit comes as late as it may, and sooner.
+        bit_delay: fitting.bit_delay.saturating_sub(jitter),
+        ..fitting
     };
     let faults = Faults {
         sound: encoder.clone(),
         spoilt: Spoilt::default(),
         asked: *asked,
     };
-    let mut link = SsiLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
+    let mut link = SsiLink::new(encoder, delay(channel, config.cable_m));
     let turns = motion(n, channel.position_bits, config.speed);
     link.set_motion(turns.clone());
     if is_open {
@@ -120,9 +125,22 @@ pub(crate) fn plug(
     }
 }
 
-/// One without a fault at channel `n`, for a run that is recorded: 10 m away.
+/// The way along a cable; the usual one is not longer than the channel takes.
+fn delay(channel: &ChannelConfig, cable_m: f64) -> Time {
+    let most_m = channel.spec.cable_m as f64;
+    let cable_m = match cable_m == CABLE_M {
+        true => cable_m.min(most_m),
+        false => cable_m,
+    };
+    (cable_m * NS_PER_M * NS as f64) as Time
+}
+
+/// One without a fault at channel `n`, for a run that is recorded: 10 m away, or as far as the channel takes.
 pub(crate) fn sound(channel: &ChannelConfig, asked: &SsiSpec, n: usize) -> SsiLink {
-    let mut link = SsiLink::new(fitting(channel, asked, n as u64 + 1), 50 * NS);
+    let mut link = SsiLink::new(
+        fitting(channel, asked, n as u64 + 1),
+        delay(channel, CABLE_M),
+    );
     link.set_motion(motion(n, channel.position_bits, 1.0));
     link
 }
@@ -195,5 +213,36 @@ impl Faults {
             _ => return None,
         }
         Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::parse;
+
+    /// Catches an encoder with a delay of its own, and a cable that is longer than its channel takes.
+    #[test]
+    fn virtual_encoder_answers_as_late_as_its_channel_is_configured() {
+        for (delay_ns, cable_m, way_ns) in [(150, 3, 15), (400, 30, 50)] {
+            let text = format!(
+                "name = \"late\"\n[clock]\nsystem_hz = 100_000_000\n[[channel]]\nprotocol = \"ssi\"\nposition_bits = 25\n\
+                 clock_hz = 1_000_000\ncable_m = {cable_m}\nbit_delay_ns = {delay_ns}\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n"
+            );
+            let card = parse("late.toml", &text).unwrap().card;
+            let channel = &card.channels[0];
+            let asked = channel.spoken.ssi().unwrap();
+            let config = VirtualConfig::default();
+            let plugged = plug(channel, asked, 0, false, &config).encoder;
+            for mut encoder in [plugged, Box::new(sound(channel, asked, 0))] {
+                encoder.set_clock(0, false);
+                encoder.advance_to(500 * NS);
+                encoder.set_clock(500 * NS, true);
+                // The first bit of a position of less than half the range is LOW.
+                let due = (500 + delay_ns + 2 * way_ns) * NS;
+                assert!(encoder.advance_to(due - 1), "too soon");
+                assert!(!encoder.advance_to(due), "too late");
+            }
+        }
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::config::forms::form;
 use crate::form::key::{keys, Choice, Key, Usual, CHANNELS};
-use endat_hdl::protocols::ssi::asked::Parity;
 use endat_hdl::protocols::ssi::specials::{Special, SPECIALS_MAX};
+use endat_hdl::protocols::ssi::{asked::Parity, protocol::BIT_DELAY_NS};
 use endat_regs::Protocol;
 
 const CHANNEL: &[&str] = &[CHANNELS];
@@ -52,6 +52,9 @@ keys! {
         .one_of(codes).of(SPEAKS_IT).usual(Usual::Word(BINARY));
     PARITY = Key::text(CHANNEL, "parity", "bit behind the position, over its bits as they are sent")
         .one_of(parities).of(SPEAKS_IT).usual(Usual::Word("none"));
+    BIT_DELAY = Key::number(CHANNEL, "bit_delay_ns", "longest time from a clock edge to its bit, at the encoder, from its data sheet")
+        .note("with the cable both ways and the input it must fit into a period; less lets the clock be faster; checked, changes nothing in the card")
+        .of(SPEAKS_IT).usual(Usual::Number(BIT_DELAY_NS));
     TWICE = Key::boolean(CHANNEL, "twice", "whether each position is asked for twice, and the two are compared: SSI has no check sum")
         .note("for an encoder that repeats while the clock goes on (multiple transmission); a frame is twice as long")
         .of(SPEAKS_IT).usual(Usual::Boolean(false));

@@ -1,6 +1,8 @@
 //! The keys of a `[[channel]]` that speaks SSI.
 
-use super::keys::{BINARY, BITS_AFTER, BITS_BEFORE, CODE, END_LOW, GRAY, PARITIES, PARITY, TWICE};
+use super::keys::{
+    BINARY, BITS_AFTER, BITS_BEFORE, BIT_DELAY, CODE, END_LOW, GRAY, PARITIES, PARITY, TWICE,
+};
 use crate::config::keys::{
     CABLE, CLOCK_HZ, FILTER_NS, POSITION_BITS, PROTOCOL, RECOVERY_MAX, RECOVERY_MIN, TST_NS,
 };
@@ -34,6 +36,7 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted> {
     let recovery_min_ns = number(&RECOVERY_MIN, RECOVERY_MIN.usual_number());
     let recovery_max_ns = number(&RECOVERY_MAX, RECOVERY_MAX.usual_number());
     let cable_m = number(&CABLE, CABLE.usual_number());
+    let bit_delay_ns = number(&BIT_DELAY, BIT_DELAY.usual_number());
     let gray = one_of(table, &CODE, [(BINARY, false), (GRAY, true)]);
     let parity = one_of(
         table,
@@ -52,6 +55,7 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted> {
         before: before?,
         after: after?,
         holds_end: end_low.is_some_and(|at| !at.value),
+        bit_delay_ns: bit_delay_ns?,
     });
     Some(Wanted {
         spec: ChannelSpec {
@@ -126,6 +130,8 @@ pub fn canonical(asked: &SsiSpec, channel: &ChannelConfig) -> String {
         before,
         after,
         holds_end,
+        // Only what it is checked against.
+        bit_delay_ns: _,
     } = asked;
     let mut more = String::new();
     if asked.has_specials() {

@@ -1,5 +1,6 @@
 //! What is asked of a channel that speaks SSI.
 
+use super::protocol::{BIT_DELAY_NS, BIT_DELAY_NS_MAX};
 use super::specials::{Special, Specials};
 use endat_regs::protocols::ssi::frame;
 use std::ops::RangeInclusive;
@@ -17,7 +18,7 @@ pub enum Parity {
 }
 
 /// What is asked of such a channel besides clock, width, filter and recovery time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SsiSpec {
     /// The position is in Gray code.
     pub gray: bool,
@@ -31,6 +32,22 @@ pub struct SsiSpec {
     pub after: Specials,
     /// The encoder keeps its last bit on the line until the recovery time is over, instead of LOW.
     pub holds_end: bool,
+    /// Longest time from a rising clock edge to its bit, at the encoder, in ns.
+    pub bit_delay_ns: u64,
+}
+
+impl Default for SsiSpec {
+    fn default() -> Self {
+        Self {
+            gray: false,
+            twice: false,
+            parity: Parity::None,
+            before: Specials::default(),
+            after: Specials::default(),
+            holds_end: false,
+            bit_delay_ns: BIT_DELAY_NS,
+        }
+    }
 }
 
 impl SsiSpec {
@@ -79,7 +96,7 @@ impl SsiSpec {
     }
 }
 
-/// Range of a key that only SSI has: none is a number.
-pub(crate) fn range(_: &str) -> Option<RangeInclusive<u64>> {
-    None
+/// Range of a key that only SSI has.
+pub(crate) fn range(key: &str) -> Option<RangeInclusive<u64>> {
+    (key == "bit_delay_ns").then_some(0..=BIT_DELAY_NS_MAX)
 }

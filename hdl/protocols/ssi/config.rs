@@ -1,13 +1,14 @@
 //! Requests for SSI channels into cycles, and the length of a frame.
 
 use super::asked::SsiSpec;
-use super::protocol::{bit_delay_most_ns, BIT_DELAY_NS, LATENCY_CYCLES, PERIOD_CYCLES_MIN};
+use super::protocol::{bit_delay_most_ns, CLOCK_HZ_MIN, LATENCY_CYCLES, PERIOD_CYCLES_MIN};
 use super::specials::{Places, Special, SHOWN_MAX, SPECIALS_MAX};
 use crate::config::{
-    check_clock, check_filter, check_tst, limits, microseconds, ChannelConfig, ChannelSpec, Check,
-    TooLong, DELAY_NS_PER_M, INPUT_LATENCY_CYCLES,
+    check_clock, check_filter, check_tst, is_uneven, limits, microseconds, recovery_most_ns,
+    ChannelConfig, ChannelSpec, Check, Limits, TooLong, CABLE_M_MAX, DELAY_NS_PER_M,
+    INPUT_LATENCY_CYCLES,
 };
-use crate::endat::timing::{cycles_at_least, cycles_to_ns};
+use crate::endat::timing::{cycles_at_least, cycles_at_most, cycles_to_ns, ENDAT_HZ_MAX};
 use crate::protocols::Spoken;
 
 impl SsiSpec {
@@ -31,16 +32,25 @@ impl SsiSpec {
             within("position_bits", request.position_bits),
             within("cable_m", request.cable_m),
             within("recovery_min_ns", request.recovery_min_ns),
-            within("recovery_max_ns", request.recovery_max_ns),
-            within("clock_hz", request.clock_hz),
+            within("bit_delay_ns", self.bit_delay_ns),
+            check.within(
+                "recovery_max_ns",
+                request.recovery_max_ns,
+                &recovery_limits(request.cable_m, system_hz),
+            ),
+            check.within(
+                "clock_hz",
+                request.clock_hz,
+                &Limits::new(CLOCK_HZ_MIN..=ENDAT_HZ_MAX),
+            ),
         ];
-        if are_good != [true; 5] {
+        if are_good != [true; 6] {
             return None;
         }
-        let period = check_clock(check, request.clock_hz, system_hz, false)?;
+        let period = check_clock(check, request.clock_hz, system_hz, None)?;
         let half = period / 2;
         let filter_cycles = check_filter(check, request, half, 1, system_hz, "a clock period");
-        check_bit_delay(check, request, [period, filter_cycles], system_hz);
+        self.check_bit_delay(check, request, [period, filter_cycles], system_hz);
         self.check_specials(check);
         match self.holds_end {
             true => self.check_held_end(check),
@@ -109,6 +119,50 @@ impl SsiSpec {
         }
     }
 
+    /// A bit must be there before the next one is asked for.
+    fn check_bit_delay(
+        &self,
+        check: &mut Check<'_>,
+        request: &ChannelSpec,
+        [period, filter_cycles]: [u64; 2],
+        system_hz: u64,
+    ) {
+        let (own_ns, cable_ns) = (self.bit_delay_ns, cable_ns(request));
+        let most_ns = bit_delay_most_ns(period, filter_cycles, system_hz);
+        if most_ns >= own_ns + cable_ns {
+            return;
+        }
+        let input_cycles = LATENCY_CYCLES + filter_cycles;
+        let needed = cycles_at_least(own_ns + cable_ns, system_hz) + input_cycles;
+        let mut cycles = needed.max(PERIOD_CYCLES_MIN);
+        while is_uneven(cycles) {
+            cycles += 1;
+        }
+        // Nothing is proposed that would be refused itself.
+        let mut remedies = Vec::new();
+        if system_hz / cycles >= CLOCK_HZ_MIN {
+            remedies.push(format!("use at most {} Hz", system_hz / cycles));
+        }
+        if let (1.., Some(left_ns)) = (request.cable_m, most_ns.checked_sub(own_ns)) {
+            remedies.push(format!("lower cable_m to {}", left_ns / DELAY_NS_PER_M));
+        }
+        if let Some(left_ns) = most_ns.checked_sub(cable_ns) {
+            remedies.push(format!(
+                "lower bit_delay_ns to {left_ns}, if that is the encoder's"
+            ));
+        }
+        let remedy = match remedies.is_empty() {
+            true => "lower bit_delay_ns and cable_m".into(),
+            false => remedies.join(", or "),
+        };
+        let text = format!(
+            "a bit takes up to {} ns of a period from its clock edge ({own_ns} ns in the encoder, the rest in {} m of cable), and the input {input_cycles} cycles; {remedy}",
+            own_ns + cable_ns,
+            request.cable_m
+        );
+        check.fail("clock_hz", request.clock_hz, text);
+    }
+
     /// Why a trigger would come before the channel is ready, and the remedy.
     pub(crate) fn too_long(&self, index: usize, channel: &ChannelConfig, times: TooLong) -> String {
         let twice = match self.twice {
@@ -129,51 +183,50 @@ impl SsiSpec {
 fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec) {
     let (least_ns, most_ns) = (request.recovery_min_ns, request.recovery_max_ns);
     if least_ns > most_ns {
-        let text = format!("above recovery_max_ns = {most_ns}; lower it, or raise recovery_max_ns");
+        let text = format!(
+            "above recovery_max_ns = {most_ns}; lower it to {most_ns}, or raise recovery_max_ns to {least_ns}"
+        );
         check.fail("recovery_min_ns", least_ns, text);
     }
 }
 
 /// The LOW behind the last bit must still be there where it is looked at: a period behind the last rising edge.
 fn check_recovery_low(check: &mut Check<'_>, request: &ChannelSpec, period: u64, system_hz: u64) {
-    let least_ns = request.recovery_min_ns;
-    if least_ns > request.recovery_max_ns {
+    let (least_ns, most_ns) = (request.recovery_min_ns, request.recovery_max_ns);
+    if least_ns > most_ns {
         return;
     }
     let end_cycles = period / 2 + period;
     let end_ns = cycles_to_ns(end_cycles, system_hz);
     if end_ns > least_ns {
+        // Three halves of an even period.
+        let longest = cycles_at_most(least_ns, system_hz) / 3 * 2;
+        let clock = match longest {
+            PERIOD_CYCLES_MIN.. => format!("use at least {} Hz, or ", system_hz.div_ceil(longest)),
+            _ => String::new(),
+        };
+        let raised = match end_ns > most_ns {
+            true => "recovery_min_ns and recovery_max_ns",
+            false => "recovery_min_ns",
+        };
         let text = format!(
-            "the LOW behind the last bit is looked at {end_ns} ns after the last falling edge, recovery_min_ns = {least_ns} ends it sooner; use at least {} Hz, or raise recovery_min_ns to the encoder's",
-            // Three halves of a period.
-            3_000_000_000u64.div_ceil(2 * least_ns)
+            "the LOW behind the last bit is looked at {end_ns} ns after the last falling edge, recovery_min_ns = {least_ns} ends it sooner; {clock}raise {raised} to {end_ns}, if the encoder's is as long"
         );
         check.fail("clock_hz", request.clock_hz, text);
     }
 }
 
+/// The longest recovery time, and the cable, are counted together.
+fn recovery_limits(cable_m: u64, system_hz: u64) -> Limits {
+    let limits = limits("recovery_max_ns", Some(system_hz));
+    let cable_m = cable_m.min(CABLE_M_MAX);
+    limits.at_most(
+        recovery_most_ns(system_hz, cable_m),
+        "less with a longer cable_m",
+    )
+}
+
 /// Both ways along the cable, in ns.
 fn cable_ns(request: &ChannelSpec) -> u64 {
     DELAY_NS_PER_M * request.cable_m
-}
-
-/// A bit must be there before the next one is asked for.
-fn check_bit_delay(
-    check: &mut Check<'_>,
-    request: &ChannelSpec,
-    [period, filter_cycles]: [u64; 2],
-    system_hz: u64,
-) {
-    let needed_ns = BIT_DELAY_NS + cable_ns(request);
-    if bit_delay_most_ns(period, filter_cycles, system_hz) >= needed_ns {
-        return;
-    }
-    let cycles = cycles_at_least(needed_ns, system_hz) + LATENCY_CYCLES + filter_cycles;
-    let text = format!(
-        "a bit takes up to {needed_ns} ns of a period from its clock edge ({BIT_DELAY_NS} ns in the encoder, the rest in {} m of cable), and the input {} cycles; use at most {} Hz, or a shorter cable_m",
-        request.cable_m,
-        LATENCY_CYCLES + filter_cycles,
-        system_hz / cycles.max(PERIOD_CYCLES_MIN)
-    );
-    check.fail("clock_hz", request.clock_hz, text);
 }

@@ -6,9 +6,13 @@
 
 use crate::endat::timing::cycles_to_ns;
 
-/// Longest time from a rising clock edge to its bit, at the encoder, in ns. Data sheets give 100 ns and more; no source has an upper limit for
-/// all encoders, this is what a channel leaves them.
+/// Usual longest time from a rising clock edge to its bit, at the encoder, in ns. Data sheets give 100 ns and more; no source has an upper
+/// limit for all encoders.
 pub const BIT_DELAY_NS: u64 = 400;
+/// Longest such time that may be asked for, in ns: most of a period of the slowest clock.
+pub const BIT_DELAY_NS_MAX: u64 = 10_000;
+/// Slowest clock, in hertz. Ref: TR-Electronic, data sheets of SSI encoders (80 kHz to 1 MHz).
+pub const CLOCK_HZ_MIN: u64 = 80_000;
 /// System clock cycles from a pin to the level that is taken, without the filter: synchroniser, level, and the clock's own register.
 pub const LATENCY_CYCLES: u64 = 6;
 /// Shortest period, in system clock cycles.
