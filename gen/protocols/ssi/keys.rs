@@ -58,10 +58,10 @@ keys! {
     TWICE = Key::boolean(CHANNEL, "twice", "whether each position is asked for twice, and the two are compared: SSI has no check sum")
         .note("for an encoder that repeats while the clock goes on (multiple transmission); a frame is twice as long")
         .of(SPEAKS_IT).usual(Usual::Boolean(false));
-    BITS_BEFORE = Key::texts(CHANNEL, "bits_before", "bits before the position that are none of it, in the order in which they come")
+    BITS_BEFORE = Key::texts(CHANNEL, "bits_before", "special bits before the position, which are not part of it, in the order in which they come")
         .note("no more with those of `bits_after`, where a CRC counts as six ([ssi.md](ssi.md#special-bits))")
         .one_of(specials_before).repeating().at_most(SPECIALS_MAX).of(SPEAKS_IT);
-    BITS_AFTER = Key::texts(CHANNEL, "bits_after", "bits after the position, and after its parity bit")
+    BITS_AFTER = Key::texts(CHANNEL, "bits_after", "special bits after the position, and after its parity bit")
         .one_of(specials).repeating().at_most(SPECIALS_MAX).of(SPEAKS_IT);
     END_LOW = Key::boolean(CHANNEL, "end_low", "whether DATA is LOW after the last bit until the recovery time is over")
         .note("`false` for an encoder that keeps its last bit on the line; not with `twice`")
