@@ -23,6 +23,8 @@ pub fn step_name(step: u16) -> String {
 /// Name plate of an encoder. What the card has not read is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct NamePlate {
+    /// What the drivers have of it, too.
+    pub driver: endat_driver::NamePlate,
     /// The card has initialised the encoder with success.
     pub initialised: bool,
     /// Step of the initialisation that is under way.
@@ -65,36 +67,19 @@ pub struct NamePlate {
     pub delay_cycles: Option<u16>,
 }
 
-/// Printable characters of a number's letters.
-fn letters(bytes: &[u8]) -> String {
-    let printable = bytes.iter().filter(|b| b.is_ascii_graphic());
-    printable.map(|b| char::from(*b)).collect()
-}
-
 impl NamePlate {
     /// Puts the words together; `word` gives one by its name, if the card has read it.
     pub(crate) fn new(word: impl Fn(&str) -> Option<u16>) -> Self {
-        let long =
-            |low: &str, high: &str| Some(u32::from(word(low)?) | u32::from(word(high)?) << 16);
-        let id = || {
-            let head = letters(&word("id_0")?.to_be_bytes());
-            Some(format!("{head}{}", long("id_1", "id_2")?))
-        };
-        let serial = || {
-            let (first, middle, last) = (word("serial_0")?, word("serial_1")?, word("serial_2")?);
-            let [high, head] = first.to_be_bytes();
-            let [tail, low] = last.to_be_bytes();
-            let number = u32::from(high) << 24 | u32::from(middle) << 8 | u32::from(low);
-            Some(format!("{}{number}{}", letters(&[head]), letters(&[tail])))
-        };
+        let driver = endat_driver::NamePlate::of(&word);
         Self {
-            position_bits: word("position_bits").map(|w| u32::from(w & 0x3F)),
-            rotary: word("encoder_type").map(|w| w >> 15 == 1),
-            signal_periods: long("signal_periods_low", "signal_periods_high"),
-            revolutions: word("revolutions").map(u32::from),
-            steps: long("steps_low", "steps_high"),
-            id: id(),
-            serial: serial(),
+            position_bits: driver.position_bits,
+            rotary: driver.rotary,
+            signal_periods: driver.signal_periods,
+            revolutions: driver.revolutions,
+            steps: driver.steps,
+            id: driver.id.map(|id| id.to_string()),
+            serial: driver.serial.map(|serial| serial.to_string()),
+            driver,
             safety: word("commands").map(|w| w >> 2 & 3 == 1),
             tcal: word("tcal"),
             infos_1: word("infos_1"),

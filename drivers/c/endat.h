@@ -230,6 +230,30 @@ endat_error endat_clear(const endat_card *card, uint32_t channel);
  * @return ENDAT_NOTHING if it was not read.
  */
 endat_error endat_read_plate(const endat_card *card, uint32_t word_address, uint16_t *value);
+
+/** Bytes of the longest number of an encoder as text: two letters, ten digits or one letter around them, and the end. */
+#define ENDAT_NUMBER_BYTES 13u
+
+/** What an encoder says of itself, as `endat-gen id` prints it. */
+typedef struct {
+    char id[ENDAT_NUMBER_BYTES];     /**< ID number. */
+    char serial[ENDAT_NUMBER_BYTES]; /**< Serial number. */
+    uint32_t position_bits;          /**< Width of the position. */
+    bool rotary;                     /**< Rotary, not linear. */
+    uint32_t steps;                  /**< Measuring steps per revolution, or the measuring step in nm. */
+    uint32_t revolutions;            /**< Distinguishable revolutions, 0 or 1 = singleturn. */
+    uint32_t signal_periods;         /**< Signal periods per revolution, or the signal period in nm. */
+} endat_name_plate;
+
+/**
+ * The ID number of a channel's encoder, as it is printed on it; what cannot be printed is left out.
+ * @return ENDAT_NOTHING if it was not read, ENDAT_ERROR_PART on a card without initialisation; the text is empty then.
+ */
+endat_error endat_id(const endat_card *card, uint32_t channel, char text[ENDAT_NUMBER_BYTES]);
+/** The serial number; otherwise as endat_id(). */
+endat_error endat_serial(const endat_card *card, uint32_t channel, char text[ENDAT_NUMBER_BYTES]);
+/** The name plate; ENDAT_NOTHING if a word of it was not read. */
+endat_error endat_read_name_plate(const endat_card *card, uint32_t channel, endat_name_plate *plate);
 /** What the n-th word of the name plate is. */
 const char *endat_plate_text(uint32_t number);
 

@@ -176,6 +176,110 @@ endat_error endat_read_plate(const endat_card *card, uint32_t word_address, uint
     return error;
 }
 
+/** Adds a letter to a text, if it can be printed. */
+static uint32_t add_letter(char *text, uint32_t length, uint32_t letter)
+{
+    uint32_t longer = length;
+
+    if ((letter > 0x20u) && (letter < 0x7Fu)) {
+        text[length] = (char)letter;
+        longer++;
+    }
+    return longer;
+}
+
+/** Adds a number to a text. */
+static uint32_t add_number(char *text, uint32_t length, uint32_t number)
+{
+    uint32_t unit = 1000000000u;
+    uint32_t longer = length;
+
+    while ((unit > 1u) && ((number / unit) == 0u)) {
+        unit /= 10u;
+    }
+    while (unit > 0u) {
+        text[longer] = (char)(0x30u + ((number / unit) % 10u));
+        longer++;
+        unit /= 10u;
+    }
+    return longer;
+}
+
+/** A word of the name plate of a channel, unless there has been an error. */
+static uint32_t plate_word(const endat_card *card, uint32_t channel, uint32_t word_address, endat_error *error)
+{
+    uint16_t value = 0u;
+
+    if (*error == ENDAT_OK) {
+        *error = endat_needs_endat(card, channel);
+    }
+    if (*error == ENDAT_OK) {
+        *error = endat_read_plate(card, word_address, &value);
+    }
+    return value;
+}
+
+endat_error endat_id(const endat_card *card, uint32_t channel, char text[ENDAT_NUMBER_BYTES])
+{
+    endat_error error = ENDAT_OK;
+    const uint32_t letters = plate_word(card, channel, ENDAT_MAP_SERVICE_ID_0_WORD(channel), &error);
+    const uint32_t low = plate_word(card, channel, ENDAT_MAP_SERVICE_ID_1_WORD(channel), &error);
+    const uint32_t high = plate_word(card, channel, ENDAT_MAP_SERVICE_ID_2_WORD(channel), &error);
+    uint32_t length = 0u;
+
+    if (error == ENDAT_OK) {
+        length = add_letter(text, length, letters >> 8u);
+        length = add_letter(text, length, letters & 0xFFu);
+        length = add_number(text, length, (high << 16u) | low);
+    }
+    text[length] = '\0';
+    return error;
+}
+
+endat_error endat_serial(const endat_card *card, uint32_t channel, char text[ENDAT_NUMBER_BYTES])
+{
+    endat_error error = ENDAT_OK;
+    /* High byte and a letter, the middle, a letter and the low byte. */
+    const uint32_t first = plate_word(card, channel, ENDAT_MAP_SERVICE_SERIAL_0_WORD(channel), &error);
+    const uint32_t middle = plate_word(card, channel, ENDAT_MAP_SERVICE_SERIAL_1_WORD(channel), &error);
+    const uint32_t last = plate_word(card, channel, ENDAT_MAP_SERVICE_SERIAL_2_WORD(channel), &error);
+    uint32_t length = 0u;
+
+    if (error == ENDAT_OK) {
+        length = add_letter(text, length, first & 0xFFu);
+        length = add_number(text, length, ((first >> 8u) << 24u) | (middle << 8u) | (last & 0xFFu));
+        length = add_letter(text, length, last >> 8u);
+    }
+    text[length] = '\0';
+    return error;
+}
+
+endat_error endat_read_name_plate(const endat_card *card, uint32_t channel, endat_name_plate *plate)
+{
+    endat_error error = ENDAT_OK;
+    const uint32_t bits = plate_word(card, channel, ENDAT_MAP_SERVICE_POSITION_BITS_WORD(channel), &error);
+    const uint32_t type = plate_word(card, channel, ENDAT_MAP_SERVICE_ENCODER_TYPE_WORD(channel), &error);
+    const uint32_t periods_low = plate_word(card, channel, ENDAT_MAP_SERVICE_SIGNAL_PERIODS_LOW_WORD(channel), &error);
+    const uint32_t periods_high = plate_word(card, channel, ENDAT_MAP_SERVICE_SIGNAL_PERIODS_HIGH_WORD(channel), &error);
+    const uint32_t steps_low = plate_word(card, channel, ENDAT_MAP_SERVICE_STEPS_LOW_WORD(channel), &error);
+    const uint32_t steps_high = plate_word(card, channel, ENDAT_MAP_SERVICE_STEPS_HIGH_WORD(channel), &error);
+
+    plate->position_bits = bits & 0x3Fu;
+    plate->rotary = (type >> 15u) != 0u;
+    plate->signal_periods = (periods_high << 16u) | periods_low;
+    plate->steps = (steps_high << 16u) | steps_low;
+    plate->revolutions = plate_word(card, channel, ENDAT_MAP_SERVICE_REVOLUTIONS_WORD(channel), &error);
+    plate->id[0] = '\0';
+    plate->serial[0] = '\0';
+    if (error == ENDAT_OK) {
+        error = endat_id(card, channel, plate->id);
+    }
+    if (error == ENDAT_OK) {
+        error = endat_serial(card, channel, plate->serial);
+    }
+    return error;
+}
+
 endat_error endat_request_begin(const endat_card *card, endat_request *request, uint32_t channel, uint32_t command, uint32_t address,
                                 uint32_t data)
 {

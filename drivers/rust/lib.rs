@@ -32,6 +32,7 @@ mod frame;
 mod link;
 mod map;
 mod parallel;
+mod plate;
 mod result;
 mod service;
 mod settings;
@@ -48,6 +49,7 @@ pub use error::Error;
 pub use facts::Facts;
 pub use link::{Link, Mapped};
 pub use parallel::{Parallel, Registers};
+pub use plate::{NamePlate, Number};
 pub use result::{
     difference, readings, signed, AdditionalData, Moment, Reading, MOMENT_WORDS, RESULT_WORDS,
 };

@@ -33,7 +33,9 @@ fn pins_are_found_by_number_and_by_position() {
     let board = Board::named("ulx3s").unwrap();
     let told = |word| board.pin(word).unwrap_err();
     assert!(told("gp77").starts_with("is not on a connector of ulx3s; "));
-    assert!(told("gz77").contains("no such pin; the package of LFE5U-85F-6BG381C has A1..Y20"));
+    assert!(
+        told("gz77").contains("no such pin, the package of LFE5U-85F-6BG381C has A1..Y20; use ")
+    );
 }
 
 #[test]

@@ -41,6 +41,46 @@ static void good_card(void)
     memory[ENDAT_MAP_CARD_PROTOCOLS_WORD] = 2;
 }
 
+/* What an encoder says of itself, from its words. */
+static void plates(void)
+{
+    static const struct {
+        uint16_t words[6];
+        const char *id, *serial;
+    } all[] = {
+#include "plates.h"
+    };
+    const uint32_t is_read = ENDAT_MAP_SERVICE_ALARMS_IS_READ_MASK;
+    endat_card card;
+    endat_name_plate plate;
+    char text[ENDAT_NUMBER_BYTES];
+
+    good_card();
+    memory[ENDAT_MAP_CARD_PROTOCOLS_WORD] = 0;
+    memory[ENDAT_MAP_CARD_CAPABILITIES_WORD] |= ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INITIALISE << 16;
+    CHECK(endat_open(&card, &link, 0) == ENDAT_OK, "%s", "open");
+    CHECK(endat_serial(&card, 1, text) == ENDAT_NOTHING && text[0] == 0, "%s", text);
+    for (unsigned n = 0; n < sizeof all / sizeof all[0]; n++) {
+        const uint32_t first = ENDAT_MAP_SERVICE_ENCODER_TYPE_WORD(1) - 1;
+
+        for (uint32_t at = first; at <= ENDAT_MAP_SERVICE_SERIAL_2_WORD(1); at++)
+            memory[at] = is_read;
+        for (uint32_t word = 0; word < 6; word++)
+            memory[ENDAT_MAP_SERVICE_ID_0_WORD(1) + word] = is_read | all[n].words[word];
+        CHECK(endat_id(&card, 1, text) == ENDAT_OK && strcmp(text, all[n].id) == 0, "%s", text);
+        CHECK(endat_serial(&card, 1, text) == ENDAT_OK && strcmp(text, all[n].serial) == 0, "%s", text);
+        memory[ENDAT_MAP_SERVICE_POSITION_BITS_WORD(1)] = is_read | 0x4025;
+        memory[ENDAT_MAP_SERVICE_ENCODER_TYPE_WORD(1)] = is_read | 0x8000;
+        memory[ENDAT_MAP_SERVICE_STEPS_HIGH_WORD(1)] = is_read | 0x0200;
+        memory[ENDAT_MAP_SERVICE_REVOLUTIONS_WORD(1)] = is_read | 4096;
+        CHECK(endat_read_name_plate(&card, 1, &plate) == ENDAT_OK && strcmp(plate.serial, all[n].serial) == 0, "%s", plate.serial);
+        CHECK(plate.position_bits == 37 && plate.rotary && plate.steps == 33554432 && plate.revolutions == 4096, "%u",
+              (unsigned)plate.steps);
+    }
+    memory[ENDAT_MAP_SERVICE_SERIAL_1_WORD(1)] = 0;
+    CHECK(endat_read_name_plate(&card, 1, &plate) == ENDAT_NOTHING && plate.serial[0] == 0, "%s", plate.serial);
+}
+
 static void identities(void)
 {
     endat_card card;
@@ -316,6 +356,7 @@ static void confirmed_writes(void)
 void alone(void)
 {
     identities();
+    plates();
     requests();
     positions();
     numbers();

@@ -8,7 +8,8 @@ use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use endat_driver::regs::Protocol;
 use endat_driver::regs::{self, causes::endat, service::request_state};
 use endat_driver::{
-    difference, signed, Card, Error, Link, ModeCommand, Moment, Parallel, Part, Sources, Spi, Uart,
+    difference, signed, Card, Error, Link, ModeCommand, Moment, NamePlate, Parallel, Part, Sources,
+    Spi, Uart,
 };
 use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;
@@ -83,6 +84,11 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
         let bits = card.read_plate(1, "position_bits").unwrap().unwrap();
         assert_eq!(u32::from(bits & 0x3F), WIDTHS[1]);
         assert_eq!(card.read_plate(1, "request"), Err(Error::Argument));
+        let plate = card.read_name_plate(1).unwrap();
+        let told = plate.to_string();
+        assert!(told.contains("  ID number         123456\n"), "{told}");
+        assert!(told.contains("  serial number     1\n"), "{told}");
+        assert_eq!(plate.position_bits, Some(WIDTHS[1]));
         let got = card.write_parameter(1, 0xA9, 3, 0x1234, 200).unwrap();
         assert!(got.time_us > 100, "{got:?}");
         assert_eq!(card.read_parameter(1, 0xA9, 3, 200).unwrap().data, 0x1234);
@@ -787,4 +793,32 @@ fn it_needs_no_standard_library() {
             }
         }
     }
+}
+
+/// Catches letters in a wrong order, digits that are lost, and a difference from the driver in C, which reads the same lines.
+#[test]
+fn name_plates_are_decoded_as_the_driver_in_c_does() {
+    let lines = include_str!("plates.h").lines();
+    let mut seen = 0;
+    for line in lines.filter(|line| line.starts_with('{')) {
+        let plain = line.trim_end_matches(',').replace(['{', '}'], "");
+        let parts: Vec<&str> = plain.split(", ").collect();
+        let word = |name: &str| {
+            let (kind, number) = name.split_once('_')?;
+            let number: usize = number.parse().ok()?;
+            let at = match kind {
+                "id" => number,
+                "serial" => 3 + number,
+                _ => return None,
+            };
+            u16::from_str_radix(parts[at].trim_start_matches("0x"), 16).ok()
+        };
+        let plate = NamePlate::of(word);
+        let told = [plate.id, plate.serial].map(|number| number.unwrap().to_string());
+        let wanted = [parts[6], parts[7]].map(|text| text.trim_matches('"'));
+        assert_eq!(told, wanted);
+        assert_eq!(plate.steps, None);
+        seen += 1;
+    }
+    assert_eq!(seen, 4);
 }

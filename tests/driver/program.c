@@ -207,10 +207,14 @@ static void parameters(void)
     endat_answer got;
     endat_error error = endat_read_parameter(&card, 0, 0xA1, 0x0D, 200, &got);
     uint16_t bits = 0;
+    endat_name_plate plate;
 
     CHECK(error == ENDAT_OK && got.data == 0x801D && got.address == 0x0D, "%s: %x", endat_error_text(error), got.data);
     error = endat_read_plate(&card, ENDAT_MAP_SERVICE_POSITION_BITS_WORD(1), &bits);
     CHECK(error == ENDAT_OK && (bits & 0x3F) == 25, "%s: %x", endat_error_text(error), bits);
+    error = endat_read_name_plate(&card, 1, &plate);
+    CHECK(error == ENDAT_OK && strcmp(plate.id, "123456") == 0 && strcmp(plate.serial, "1") == 0 && plate.position_bits == 25, "%s: %s, %s",
+          endat_error_text(error), plate.id, plate.serial);
     error = endat_write_parameter(&card, 1, 0xA9, 3, 0x1234, 200, &got);
     CHECK(error == ENDAT_OK && got.time_us > 100, "%s", endat_error_text(error));
     error = endat_read_parameter(&card, 1, 0xA9, 3, 200, &got);

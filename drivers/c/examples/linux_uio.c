@@ -125,9 +125,14 @@ static endat_error run(endat_card *card)
     for (n = 0u; (n < card->channels) && (error == ENDAT_OK); n++) {
         const endat_error is_ready = endat_wait_ready(card, n, 5000u);
         endat_answer answer;
+        endat_name_plate plate;
         printf("channel %" PRIu32 ": %s\n", n, endat_error_text(is_ready));
         if ((is_ready == ENDAT_OK) && (endat_read_parameter(card, n, 0xA1u, 0x0Du, 500u, &answer) == ENDAT_OK)) {
             printf("  word 13 of its memory: 0x%04x\n", answer.data);
+        }
+        if ((is_ready == ENDAT_OK) && (endat_read_name_plate(card, n, &plate) == ENDAT_OK)) {
+            printf("  ID number %s, serial number %s, %" PRIu32 "%s\n", plate.id, plate.serial, plate.steps,
+                   plate.rotary ? " measuring steps per revolution" : " nm");
         }
     }
     if (error == ENDAT_OK) {

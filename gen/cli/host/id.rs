@@ -160,7 +160,6 @@ pub fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
         _ => "no".to_owned(),
     };
     line("initialised", Some(state));
-    let is_rotary = plate.rotary.unwrap_or(true);
     line(
         "type",
         plate.rotary.map(|rotary| {
@@ -182,29 +181,14 @@ pub fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
         "position",
         plate.position_bits.map(|bits| format!("{bits} bits")),
     );
-    line(
-        "resolution",
-        plate.steps.map(|steps| match is_rotary {
-            true => format!("{steps} measuring steps per revolution"),
-            false => format!("{steps} nm"),
-        }),
-    );
-    line(
-        "revolutions",
-        plate.revolutions.filter(|_| is_rotary).map(|n| match n {
-            0 | 1 => "singleturn".to_owned(),
-            n => n.to_string(),
-        }),
-    );
-    line(
-        "signal periods",
-        plate.signal_periods.map(|periods| match is_rotary {
-            true => format!("{periods} per revolution"),
-            false => format!("{periods} nm"),
-        }),
-    );
-    line("ID number", plate.id.clone());
-    line("serial number", plate.serial.clone());
+    // As the drivers print them.
+    let driver = plate.driver.to_string();
+    for known in driver.lines() {
+        let (name, value) = known
+            .trim_start()
+            .split_at(18.min(known.trim_start().len()));
+        line(name.trim_end(), Some(value.to_owned()));
+    }
     line(
         "tcal",
         plate
