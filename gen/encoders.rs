@@ -1,15 +1,30 @@
 //! Encoders that fit the channels of a card.
 
-use endat_hdl::config::ChannelConfig;
+use endat_hdl::config::{ChannelConfig, PositionRange};
 use endat_hdl::protocol::ModeCommand;
-use endat_sim::encoder::{EncoderConfig, PositionSource};
+use endat_sim::encoder::{EncoderConfig, PositionSource, TypePlate};
+
+/// Measuring step of a scale, in nanometres.
+const SCALE_NM: u32 = 10;
 
 /// Of the width that a channel is configured for, and of the generation that knows its command.
 pub fn fitting(channel: &ChannelConfig) -> EncoderConfig {
     let bits = channel.position_bits;
-    match channel.command {
+    let encoder = match channel.command {
         ModeCommand::SendPosition => EncoderConfig::endat21(bits),
         _ => EncoderConfig::endat22(bits),
+    };
+    // One that says the same of itself.
+    match (channel.turn_bits(), channel.spec.range) {
+        (Some([single @ 1..32, multi @ 0..16]), _) => EncoderConfig {
+            plate: TypePlate::of_turns(single as u32, multi as u32),
+            ..encoder
+        },
+        (_, Some(PositionRange::Linear)) => EncoderConfig {
+            plate: TypePlate::linear(SCALE_NM),
+            ..encoder
+        },
+        _ => encoder,
     }
 }
 

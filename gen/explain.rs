@@ -118,6 +118,8 @@ pub struct Report {
     pub sources: Vec<&'static str>,
     /// Which triggers each channel takes after reset; empty where all take all of them.
     pub own_triggers: Vec<String>,
+    /// What positions of each channel are for a host; none where it is not said.
+    pub ranges: Vec<Option<String>>,
     /// What each channel does besides positions.
     pub service: Vec<&'static str>,
     /// What stands between the registers and the host.
@@ -192,6 +194,15 @@ fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelR
     }
 }
 
+/// What positions of a channel are for a host.
+fn range(channel: &ChannelConfig) -> Option<String> {
+    match channel.turn_bits() {
+        Some([single, 0]) => Some(format!("{single} bits of angle")),
+        Some([single, multi]) => Some(format!("{single} bits of angle, {multi} that count turns")),
+        None => channel.spec.range.map(|_| "none: a scale".into()),
+    }
+}
+
 /// What each channel of a card with own triggers takes.
 fn own_triggers(card: &CardConfig) -> Vec<String> {
     if !card.own_triggers() {
@@ -248,6 +259,7 @@ pub fn report(project: &Project) -> Report {
             .map(|(_, name)| name)
             .collect(),
         own_triggers: own_triggers(card),
+        ranges: card.channels.iter().map(range).collect(),
         service: present(&[
             (card.service.requests, "requests"),
             (card.service.diagnosis, "diagnosis"),

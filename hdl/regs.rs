@@ -3,7 +3,7 @@
 pub use endat_regs::*;
 
 use crate::card::config_ring::RING_WORDS;
-use crate::config::{CardConfig, ChannelConfig, OwnTrigger};
+use crate::config::{CardConfig, ChannelConfig, OwnTrigger, PositionRange};
 use crate::endat::line_monitor::LineStart;
 use protocol::MAX_POSITION_BITS;
 
@@ -160,7 +160,13 @@ const STARTS: &[(&str, Start)] = &[
     }),
     ("config.frame.skip", |s, c| of(s, c, |v| own(v).skip())),
     ("config.frame.position_bits", |s, c| {
-        of(s, c, |v| v.position_bits.into())
+        of(s, c, ChannelConfig::told_position_bits)
+    }),
+    ("config.timing.multi_turn_bits", |s, c| {
+        of(s, c, ChannelConfig::multi_turn_bits)
+    }),
+    ("config.limits.range", |s, c| {
+        of(s, c, |v| PositionRange::kind(v.spec.range))
     }),
     ("config.frame.ignore_pin", |s, c| {
         of(s, c, |v| own(v).ignored() & 1)

@@ -2,6 +2,7 @@
 
 use crate::bridge::Bridge;
 use crate::name_plate::NamePlate;
+use crate::range::Ranges;
 use crate::registers::{Access, Block, Place};
 use crate::result;
 use crate::transport::Transport;
@@ -114,6 +115,7 @@ pub struct Card<T> {
     bridge: Bridge<T>,
     identity: Identity,
     patience: Duration,
+    ranges: Ranges,
 }
 
 impl<T: Transport> Card<T> {
@@ -135,6 +137,7 @@ impl<T: Transport> Card<T> {
             bridge,
             identity,
             patience: PATIENCE,
+            ranges: Ranges::default(),
         })
     }
 
@@ -156,6 +159,18 @@ impl<T: Transport> Card<T> {
     /// Lets requests take this long.
     pub fn set_patience(&mut self, patience: Duration) {
         self.patience = patience;
+    }
+
+    /// What is said about positions, whatever the card says.
+    pub fn ranges(&self) -> &Ranges {
+        &self.ranges
+    }
+
+    /// Says what positions are, of some channels.
+    pub fn set_ranges(&mut self, ranges: Ranges) -> Result<(), HostError> {
+        ranges.check(self.identity.channels)?;
+        self.ranges = ranges;
+        Ok(())
     }
 
     /// The place of that name on this card.

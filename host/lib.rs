@@ -24,6 +24,7 @@ pub mod name_plate;
 pub mod owner;
 pub mod panda;
 pub mod protocols;
+pub mod range;
 pub mod ready;
 pub mod registers;
 pub mod result;

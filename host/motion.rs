@@ -1,30 +1,9 @@
 //! Positions counted on over the place where they begin anew, and their velocity: exact, in measuring steps.
 
-use crate::name_plate::NamePlate;
-use crate::units::Scale;
 use std::collections::VecDeque;
 
 /// A velocity is that over this time at least: the steps of the encoder are small against it.
 pub const VELOCITY_OVER_S: f64 = 1e-3;
-
-/// How many positions there are until they begin anew: those of a turn, or of all turns that the encoder tells apart. None of a scale,
-/// and where the encoder does not say.
-pub fn range(scale: &Scale, plate: Option<&NamePlate>) -> Option<u64> {
-    match scale {
-        Scale::Rotary { steps_per_turn } => {
-            let turns = plate.and_then(|p| p.revolutions).unwrap_or(1).max(1);
-            steps_per_turn.checked_mul(turns.into())
-        }
-        Scale::Linear { .. } | Scale::Counts { .. } => None,
-    }
-}
-
-/// The same of all channels.
-pub fn ranges(scales: &[Scale], plates: &[Option<NamePlate>]) -> Vec<Option<u64>> {
-    let plate = |n: usize| plates.get(n).and_then(Option::as_ref);
-    let all = scales.iter().enumerate();
-    all.map(|(n, scale)| range(scale, plate(n))).collect()
-}
 
 /// Counts on where positions begin anew: the next one is where it is nearer to the last one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -121,6 +100,7 @@ impl<T: Place> Velocity<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::Scale;
 
     #[test]
     fn positions_of_48_bits_are_counted_on_without_losing_a_step() {
@@ -151,17 +131,31 @@ mod tests {
         assert_eq!(velocity.step(2.0, 100), Some(100.0));
     }
 
+    /// Forwards over a turn and over all 4096, and the same way back: no step is more than the 1000 that it is.
     #[test]
-    fn a_range_is_that_of_all_turns_that_are_told_apart() {
-        let scale = Scale::singleturn(25);
-        let plate = |revolutions| NamePlate {
-            revolutions,
-            ..NamePlate::default()
-        };
-        for (revolutions, wanted) in [(None, 25), (Some(0), 25), (Some(4_096), 37)] {
-            let found = range(&scale, Some(&plate(revolutions)));
-            assert_eq!(found, Some(1 << wanted), "{revolutions:?}");
+    fn turns_and_the_end_of_their_count_are_passed_in_both_directions() {
+        const STEP: i128 = 1_000;
+        for (single, multi, turns_at) in [(25, 12, None), (12, 13, None), (17, 16, Some(24))] {
+            let scale = Scale::of_bits(single, multi, turns_at);
+            let range = i128::from(scale.range().unwrap());
+            // As such an encoder sends it.
+            let sent = |steps: i128| {
+                let steps = steps.rem_euclid(range) as u64;
+                let (turn, within) = (steps >> single, steps & ((1 << single) - 1));
+                turn << turns_at.unwrap_or(single) | within
+            };
+            for begin in [(1 << single) - 5 * STEP, range - 5 * STEP] {
+                let mut unwrap = Unwrap::new(scale.range());
+                let there = (0..10).map(|n| begin + n * STEP);
+                let back = (0..10).map(|n| begin + (9 - n) * STEP);
+                let first = unwrap.step(scale.steps(sent(begin)));
+                for wanted in there.chain(back) {
+                    let counted = unwrap.step(scale.steps(sent(wanted)));
+                    assert_eq!(counted - first, wanted - begin, "{single}+{multi}");
+                }
+            }
         }
-        assert_eq!(range(&Scale::Linear { step_nm: 1.0 }, None), None);
+        let mut scale = Unwrap::new(Scale::Counted.range());
+        assert_eq!([5, 1 << 40, 5].map(|p| scale.step(p)), [5, 1 << 40, 5]);
     }
 }

@@ -98,6 +98,8 @@ impl NamePlate {
         Some(match self.rotary? {
             true => Scale::Rotary {
                 steps_per_turn: u64::from(steps),
+                turns: self.revolutions.unwrap_or(1).max(1).into(),
+                turns_at: None,
             },
             false => Scale::Linear {
                 step_nm: f64::from(steps),

@@ -4,19 +4,8 @@
 use crate::card::Card;
 use crate::name_plate::Told;
 use crate::transport::Transport;
-use crate::units::Scale;
 use crate::HostError;
 use endat_regs::Protocol;
-
-impl Scale {
-    /// That of all encoders of a protocol, if they have the same.
-    pub const fn of(protocol: Protocol) -> Option<Self> {
-        match protocol.row().single_bits {
-            Some(single_bits) => Some(Self::Counts { single_bits }),
-            None => None,
-        }
-    }
-}
 
 impl<T: Transport> Card<T> {
     /// What the encoder of a channel tells of itself, or why it does not; none of EnDat, whose encoders have name plates, and where an encoder

@@ -1,11 +1,13 @@
-//! What a host does before it reads positions: waits until the card is ready, asks what a measuring step is and whether anything triggers.
+//! What a host does before it reads positions: waits until the card is ready, asks what positions are and whether anything triggers.
 
 use crate::card::Card;
 use crate::mailbox::INITIALISATION;
 use crate::name_plate::NamePlate;
+use crate::registers::Place;
 use crate::transport::Transport;
 use crate::units::Scale;
 use crate::HostError;
+use endat_driver::Range;
 use endat_regs::{Part, Protocol};
 use std::time::{Duration, Instant};
 
@@ -15,24 +17,55 @@ const LONG: Duration = Duration::from_secs(1);
 const FIRST_RESULTS: Duration = Duration::from_secs(1);
 
 impl<T: Transport> Card<T> {
-    /// What a measuring step of a channel is: as the encoder says, else as if the position were one turn.
-    pub fn scale(&mut self, channel: usize) -> Result<Scale, HostError> {
-        if let Some(scale) = Scale::of(self.identity().protocol(channel)) {
-            return Ok(scale);
-        }
-        if self.identity().has(Part::Initialise) {
-            if let Some(scale) = self.name_plate(channel)?.scale() {
-                return Ok(scale);
+    /// What positions of a channel are: as [`Card::set_ranges`] was told, else as the encoder says, else as the configuration does. And a
+    /// word about it if the last two contradict each other.
+    pub fn scale(&mut self, channel: usize) -> Result<(Scale, Option<String>), HostError> {
+        let protocol = self.identity().protocol(channel);
+        let plate = match self.identity().has(Part::Initialise) && protocol == Protocol::Endat {
+            true => Some(self.name_plate(channel)?),
+            false => None,
+        };
+        let words = self
+            .bridge()
+            .read(Place::at("config", "frame", channel).address(), 3)?;
+        let words: [u32; 3] = words.try_into().unwrap_or_default();
+        let bits = Place::field_at("config", "frame", "position_bits", channel).of(words[0]);
+        let own = plate.as_ref().and_then(NamePlate::scale);
+        let width = plate.and_then(|plate| plate.position_bits).unwrap_or(bits);
+        let said = self.ranges().scale(channel, protocol, Some(width))?;
+        let configured = Scale::of_range(Range::of_words(words, protocol));
+        Ok(match (said, own, configured) {
+            // The same, and more of it.
+            (Some(Scale::Counted), Some(own @ Scale::Linear { .. }), _) => (own, None),
+            (Some(said), ..) => (said, None),
+            (None, Some(own), Some(configured)) if !own.agrees(&configured) => {
+                let text = format!(
+                    "channel {channel}: the configuration says {configured}, the encoder {own}: the encoder's is taken; correct single_turn_bits, multi_turn_bits or linear"
+                );
+                (own, Some(text))
             }
-        }
-        let bits = self.read_named(&format!("config{channel}.frame.position_bits"))?;
-        Ok(Scale::singleturn(bits))
+            (None, Some(own), _) => (own, None),
+            (None, None, Some(configured)) => (configured, None),
+            (None, None, None) => {
+                let turns_at = protocol.row().turns_at;
+                (Scale::Counts { turns_at }, None)
+            }
+        })
     }
 
-    /// What a measuring step is, of every channel.
+    /// What positions are, of every channel.
     pub fn scales(&mut self) -> Result<Vec<Scale>, HostError> {
         let channels = 0..self.identity().channels;
-        channels.map(|channel| self.scale(channel)).collect()
+        let all = channels.map(|channel| Ok(self.scale(channel)?.0));
+        all.collect()
+    }
+
+    /// What is to be told about that.
+    pub fn scale_notes(&mut self) -> Result<Vec<String>, HostError> {
+        let channels = 0..self.identity().channels;
+        let notes = channels.map(|channel| Ok(self.scale(channel)?.1));
+        let notes: Result<Vec<_>, HostError> = notes.collect();
+        Ok(notes?.into_iter().flatten().collect())
     }
 
     /// Name plates; none of a channel whose encoder the card does not read.

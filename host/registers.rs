@@ -327,9 +327,8 @@ mod tests {
         );
         assert_eq!(frame("position_bits", 48, Protocol::Endat), None);
         assert_eq!(
-            frame("position_bits", 49, Protocol::TFormat),
-            None,
-            "no meaning there"
+            frame("position_bits", 49, Protocol::TFormat).unwrap(),
+            "1..48"
         );
         assert_eq!(
             frame("period_cycles", 128, Protocol::TFormat).unwrap(),

@@ -1,27 +1,32 @@
 //! Positions in units: degrees and turns of a rotary encoder, millimetres of a linear one.
 
+use endat_driver::Range;
 use std::f64::consts::TAU;
+use std::fmt;
 
-/// Bits of a position.
-const POSITION_BITS: u32 = endat_regs::protocol::MAX_POSITION_BITS;
-
-/// What a measuring step of an encoder is.
+/// What a position is: where its turns are, what a measuring step is, after how many it begins anew.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// Measuring steps per revolution.
+    /// Turns and the angle within a turn.
     Rotary {
         /// Measuring steps per revolution.
         steps_per_turn: u64,
+        /// Turns that are told apart, 1 where none are counted: behind the last one the position is 0 again.
+        turns: u64,
+        /// Lowest bit that counts turns, where unused bits are below; else turns are counted in whole `steps_per_turn`.
+        turns_at: Option<u32>,
     },
-    /// Measuring step in nanometres.
+    /// A place on a scale, with the measuring step in nanometres.
     Linear {
         /// Measuring step in nanometres.
         step_nm: f64,
     },
-    /// Counts of an encoder that does not tell how many of them are a turn: those within the turn in the low bits, turns above.
+    /// A place on a scale, whose measuring step nobody says.
+    Counted,
+    /// Counts of which nobody says where they begin anew: none is counted on, and two have no distance.
     Counts {
-        /// Bits that counts within the turn have; all of a position where nothing says what a turn is.
-        single_bits: u32,
+        /// Lowest bit that counts turns, where that is known at least.
+        turns_at: Option<u32>,
     },
 }
 
@@ -36,23 +41,123 @@ pub struct InUnits {
     pub turns: Option<u64>,
 }
 
+/// The bits below one.
+const fn below(bit: u32) -> u64 {
+    match bit {
+        64.. => u64::MAX,
+        bit => (1 << bit) - 1,
+    }
+}
+
 impl Scale {
     /// A singleturn encoder of `bits` bits.
-    pub fn singleturn(bits: u32) -> Self {
+    pub const fn singleturn(bits: u32) -> Self {
+        Self::of_bits(bits, 0, None)
+    }
+
+    /// An encoder with so many bits of angle and of turns; these begin at `turns_at`, or right above the angle.
+    pub const fn of_bits(single: u32, multi: u32, turns_at: Option<u32>) -> Self {
         Self::Rotary {
-            steps_per_turn: 1 << bits.min(63),
+            steps_per_turn: below(single) + 1,
+            turns: below(multi) + 1,
+            turns_at,
         }
+    }
+
+    /// What a range means, if it says something.
+    pub const fn of_range(range: Range) -> Option<Self> {
+        match range {
+            Range::Unknown => None,
+            Range::Linear => Some(Self::Counted),
+            Range::Rotary(turns) => {
+                let is_apart = turns.turns_at != turns.single_turn_bits;
+                let at = if is_apart { Some(turns.turns_at) } else { None };
+                Some(Self::of_bits(
+                    turns.single_turn_bits,
+                    turns.multi_turn_bits,
+                    at,
+                ))
+            }
+        }
+    }
+
+    /// Whether positions can be counted on and compared: it is known where they begin anew, if at all.
+    pub const fn is_known(&self) -> bool {
+        !matches!(self, Self::Counts { .. })
+    }
+
+    /// Measuring steps after which positions begin anew: those of all turns that are told apart. None of a scale, and where nobody says.
+    pub const fn range(&self) -> Option<u64> {
+        match *self {
+            Self::Rotary {
+                steps_per_turn,
+                turns,
+                ..
+            } => steps_per_turn.checked_mul(turns),
+            Self::Linear { .. } | Self::Counted | Self::Counts { .. } => None,
+        }
+    }
+
+    /// A position in measuring steps that follow each other, unused bits left out; of counts that nobody explains those below the turns.
+    pub const fn steps(&self, position: u64) -> u64 {
+        match *self {
+            Self::Rotary {
+                steps_per_turn: steps,
+                turns,
+                turns_at: Some(at),
+            } => {
+                let turn = match position.checked_shr(at) {
+                    Some(turn) => turn % if turns == 0 { 1 } else { turns },
+                    None => 0,
+                };
+                let within = position & below(at);
+                turn * steps + within % if steps == 0 { 1 } else { steps }
+            }
+            Self::Counts { turns_at: Some(at) } => position & below(at),
+            _ => position,
+        }
+    }
+
+    /// Whether the bits between angle and turns are 0; if not, the encoder uses more of them than the scale has.
+    pub const fn is_possible(&self, position: u64) -> bool {
+        match *self {
+            Self::Rotary {
+                steps_per_turn,
+                turns_at: Some(at),
+                ..
+            } => position & below(at) < steps_per_turn,
+            _ => true,
+        }
+    }
+
+    /// The same, and no bit is above those of all turns.
+    pub const fn fits(&self, position: u64) -> bool {
+        let range = match *self {
+            Self::Rotary { turns_at: None, .. } => self.range(),
+            Self::Rotary {
+                turns,
+                turns_at: Some(at),
+                ..
+            } => turns.checked_shl(at),
+            _ => None,
+        };
+        let is_below = match range {
+            Some(range) => position < range,
+            None => true,
+        };
+        self.is_possible(position) && is_below
     }
 
     /// A position in units.
     pub fn convert(&self, position: u64) -> InUnits {
+        let counted = self.steps(position);
         match *self {
-            Self::Rotary { steps_per_turn } => {
+            Self::Rotary { steps_per_turn, .. } => {
                 let steps = steps_per_turn.max(1);
                 InUnits {
-                    value: (position % steps) as f64 * 360.0 / steps as f64,
+                    value: (counted % steps) as f64 * 360.0 / steps as f64,
                     unit: "deg",
-                    turns: Some(position / steps),
+                    turns: Some(counted / steps),
                 }
             }
             Self::Linear { step_nm } => InUnits {
@@ -60,42 +165,39 @@ impl Scale {
                 unit: "mm",
                 turns: None,
             },
-            Self::Counts { single_bits } => InUnits {
-                value: self.steps(position) as f64,
+            Self::Counted => InUnits {
+                value: position as f64,
                 unit: "counts",
-                turns: (single_bits < POSITION_BITS).then(|| position >> single_bits),
+                turns: None,
             },
-        }
-    }
-
-    /// The part of a position that is counted on: not the turns, where nobody tells how many counts they have.
-    pub fn steps(&self, position: u64) -> u64 {
-        match self {
-            Self::Counts { single_bits } => position & ((1 << single_bits) - 1),
-            Self::Rotary { .. } | Self::Linear { .. } => position,
+            Self::Counts { turns_at } => InUnits {
+                value: counted as f64,
+                unit: "counts",
+                turns: turns_at.and_then(|at| position.checked_shr(at)),
+            },
         }
     }
 
     /// Measuring steps, however many and to which side, in the unit of [`Scale::convert`].
     pub fn value(&self, steps: i128) -> f64 {
         match *self {
-            Self::Rotary { steps_per_turn } => {
+            Self::Rotary { steps_per_turn, .. } => {
                 let turn = i128::from(steps_per_turn.max(1));
                 // Towards 0: a step back from 0 keeps all its digits.
                 let (turns, within) = (steps / turn, steps % turn);
                 turns as f64 * 360.0 + within as f64 * 360.0 / turn as f64
             }
             Self::Linear { step_nm } => steps as f64 * step_nm * 1e-6,
-            Self::Counts { .. } => steps as f64,
+            Self::Counted | Self::Counts { .. } => steps as f64,
         }
     }
 
     /// One measuring step in that unit.
     pub fn step(&self) -> f64 {
         match *self {
-            Self::Rotary { steps_per_turn } => 360.0 / steps_per_turn.max(1) as f64,
+            Self::Rotary { steps_per_turn, .. } => 360.0 / steps_per_turn.max(1) as f64,
             Self::Linear { step_nm } => step_nm * 1e-6,
-            Self::Counts { .. } => 1.0,
+            Self::Counted | Self::Counts { .. } => 1.0,
         }
     }
 
@@ -105,18 +207,47 @@ impl Scale {
         match self {
             Self::Rotary { .. } => units.value / 360.0 * TAU,
             Self::Linear { .. } => units.value * 1e-3,
-            Self::Counts { .. } => units.value,
+            Self::Counted | Self::Counts { .. } => units.value,
         }
     }
 
-    /// The value in units that is 0 again; none where the encoder does not tell.
+    /// The value in units that is 0 again; none of a scale, and where nobody says.
     pub fn wraps_at(&self) -> Option<f64> {
         matches!(self, Self::Rotary { .. }).then_some(360.0)
+    }
+
+    /// Whether two say the same, as far as both say it.
+    pub fn agrees(&self, other: &Self) -> bool {
+        let is_scale = |one: &Self| matches!(one, Self::Linear { .. } | Self::Counted);
+        self == other || is_scale(self) && is_scale(other)
+    }
+
+    /// Turns that are told apart; none where there are no turns, and where nobody says.
+    pub const fn turns(&self) -> Option<u64> {
+        match *self {
+            Self::Rotary { turns, .. } => Some(turns),
+            Self::Linear { .. } | Self::Counted | Self::Counts { .. } => None,
+        }
     }
 
     /// Digits behind the point that show one measuring step.
     pub fn digits(&self) -> usize {
         (-self.step().log10()).ceil().clamp(0.0, 12.0) as usize
+    }
+}
+
+impl fmt::Display for Scale {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rotary {
+                steps_per_turn,
+                turns,
+                ..
+            } => write!(f, "{steps_per_turn} steps a turn and {turns} turns"),
+            Self::Linear { step_nm } => write!(f, "a scale of {step_nm} nm"),
+            Self::Counted => f.write_str("a scale"),
+            Self::Counts { .. } => f.write_str("nothing"),
+        }
     }
 }
 
@@ -126,39 +257,65 @@ mod tests {
 
     #[test]
     fn degrees_turns_and_millimetres() {
-        let multiturn = Scale::Rotary {
-            steps_per_turn: 1 << 25,
-        };
+        let multiturn = Scale::of_bits(25, 12, None);
         let quarter = multiturn.convert((7 << 25) | (1 << 23));
         assert_eq!(
             (quarter.value, quarter.turns, quarter.unit),
             (90.0, Some(7), "deg")
         );
         assert_eq!(multiturn.digits(), 5);
+        assert_eq!(multiturn.range(), Some(1 << 37));
         assert_eq!(Scale::singleturn(29).digits(), 7);
         let linear = Scale::Linear { step_nm: 10.0 };
         assert!((linear.convert(123_456).value - 1.23456).abs() < 1e-12);
         assert_eq!(linear.convert(123_456).turns, None);
-        assert_eq!(linear.digits(), 5);
+        assert_eq!((linear.digits(), linear.range()), (5, None));
         assert!((multiturn.si(1 << 24) - std::f64::consts::PI).abs() < 1e-12);
     }
 
     #[test]
     fn counts_are_taken_apart_and_not_turned_into_an_angle() {
-        let counts = Scale::Counts { single_bits: 24 };
+        let counts = Scale::Counts { turns_at: Some(24) };
         let units = counts.convert(7 << 24 | 0x01_FFFF);
         assert_eq!(
             (units.value, units.turns, units.unit),
             (131_071.0, Some(7), "counts")
         );
-        assert_eq!(counts.digits(), 0);
+        assert_eq!((counts.digits(), counts.is_known()), (0, false));
         assert_eq!(counts.si(5), 5.0);
+        let unknown = Scale::Counts { turns_at: None };
+        assert_eq!(unknown.convert(1 << 30).turns, None);
+    }
+
+    /// Seven of the 24 bits of angle are not used: the position goes from bit 16 to bit 24.
+    #[test]
+    fn unused_bits_between_angle_and_turns_count_for_nothing() {
+        let scale = Scale::of_bits(17, 16, Some(24));
+        let (last, first) = (100 << 24 | 130_285, 101 << 24);
+        assert_eq!(scale.steps(first) - scale.steps(last), 787);
+        let half = scale.convert(7 << 24 | 1 << 16);
+        assert_eq!((half.value, half.turns), (180.0, Some(7)));
+        assert_eq!(scale.range(), Some(1 << 33));
+        // An encoder that counts more turns than are told apart.
+        assert_eq!(scale.steps(1 << 40 | 5), 5);
+        assert!(scale.is_possible(last) && !scale.is_possible(last | 1 << 17));
+        assert!(scale.fits(last) && !scale.fits(1 << 40));
+        assert!(!Scale::singleturn(20).fits(1 << 20));
     }
 
     #[test]
     fn an_encoder_without_steps_divides_by_nothing() {
-        let odd = Scale::Rotary { steps_per_turn: 0 };
-        assert_eq!(odd.convert(5).value, 0.0);
-        assert_eq!(odd.convert(5).turns, Some(5));
+        for turns_at in [None, Some(24)] {
+            let odd = Scale::Rotary {
+                steps_per_turn: 0,
+                turns: 0,
+                turns_at,
+            };
+            assert_eq!(odd.convert(5).value, 0.0);
+            assert_eq!(
+                odd.convert(5).turns,
+                Some(5).filter(|_| turns_at.is_none()).or(Some(0))
+            );
+        }
     }
 }

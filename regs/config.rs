@@ -1,8 +1,22 @@
 //! Configuration of the card and of its channels.
 
+use crate::named::codes;
 use crate::protocol::POSITION_COMMANDS;
 use crate::{field, word, Access, Block, BLOCK_STRIDE, CONFIG_BASE};
 use Access::ReadWrite;
+
+/// What a position of a channel is, as far as the host knows it from the card.
+pub mod range {
+    use super::codes;
+
+    codes! {
+        /// All of them.
+        ALL: u8;
+        UNKNOWN = 0, "unknown", "not given: the encoder's name plate has it, or nobody";
+        ROTARY = 1, "rotary", "multi_turn_bits count turns, the bits below them the angle";
+        LINEAR = 2, "linear", "no bit counts turns, and the position does not wrap";
+    }
+}
 
 /// Configuration of the card.
 pub const CARD_CONFIG: Block = Block {
@@ -66,7 +80,7 @@ pub const CHANNEL_CONFIG: Block = Block {
                 field("period_cycles", 0, 11, "cycles", "EnDat clock period; the high phase is the longer one when odd; T-format: a bit, 8..127")
                 .takes(&[(2, 2047)]).by_protocol("period_cycles"),
                 field("skip", 11, 5, "", "Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources"),
-                field("position_bits", 16, 6, "bits", "Position width, 1..48; T-format: no meaning, as command")
+                field("position_bits", 16, 6, "bits", "Position width, 1..48; T-format: bits of angle and turns together if limits.range says rotary, else no meaning, as command")
                 .takes(&[(1, 48)]).by_protocol("position_bits"),
                 field("ignore_pin", 22, 1, "", "1: the trigger pin is not for this channel"),
                 field("ignore_timer", 23, 1, "", "1: the timer is not"),
@@ -79,9 +93,11 @@ pub const CHANNEL_CONFIG: Block = Block {
             "timing",
             1,
             ReadWrite,
-            "First low phase and tolerance of the start bit.",
+            "First low phase and tolerance of the start bit; bits that count turns.",
             &[
                 field("first_low_extra_cycles", 0, 11, "cycles", "First low phase minus half a period (tST)"),
+                field("multi_turn_bits", 11, 5, "bits", "Upper bits of the position that count turns, if limits.range says rotary; for the host only. T-format: of bits 47..24, up to 24")
+                .by_protocol("multi_turn_bits"),
                 field("start_window_cycles", 16, 6, "cycles", "The start edge must come within plus or minus this of its expected phase"),
                 field("filter_half", 23, 1, "", "1: half a cycle more; with part double_edge only"),
                 field("filter_cycles", 24, 4, "cycles", "Pulses on DATA up to this length are ignored; 0 = off"),
@@ -93,10 +109,12 @@ pub const CHANNEL_CONFIG: Block = Block {
             "limits",
             2,
             ReadWrite,
-            "Longest waits.",
+            "Longest waits; what the position is.",
             &[
                 field("start_timeout_us", 0, 12, "us", "Longest wait for the start bit after the turnaround; T-format: longest pause before the reply, 1..63")
                 .by_protocol("start_timeout_us"),
+                field("range", 12, 2, "", "What the position is; for the host only")
+                .codes(range::ALL),
                 field("recovery_limit_cycles", 16, 13, "cycles", "DATA must fall within this after the frame (tm)"),
                 field("field_gap_us", 29, 3, "us", "T-format: longest pause between two fields"),
             ],

@@ -40,7 +40,7 @@ mod text;
 use register::{field, word};
 
 pub use card::CARD;
-pub use config::{CARD_CONFIG, CHANNEL_CONFIG};
+pub use config::{range, CARD_CONFIG, CHANNEL_CONFIG};
 pub use line::LINE;
 pub use named::{Named, Values};
 pub use outputs::{DIRECT, ERROR_CAUSES, INTERRUPT, INTERRUPT_EVENTS};
@@ -53,7 +53,7 @@ pub use result::{EVIDENCE_FLAGS, INFO_FIRST, LINE_FLAGS, RESULT};
 pub use service::SERVICE;
 
 /// Major, minor and patch version of the register map; minor rises with each word or field that is added (`regs/tests.rs` checks it).
-pub const VERSION: [u8; 3] = [1, 0, 0];
+pub const VERSION: [u8; 3] = [1, 1, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the interrupt.

@@ -29,8 +29,10 @@ pub struct ProtocolRow {
     pub channels: Option<Field>,
     /// What a card has that speaks it, if its channels have words of their own.
     pub part: Option<Part>,
-    /// Low bits of a position that are the place within a turn, if no encoder tells it; all of them where nothing says what a turn is.
-    pub single_bits: Option<u32>,
+    /// Lowest bit of a position that counts turns, where that does not follow from the width of the angle: unused bits are between the two.
+    pub turns_at: Option<u32>,
+    /// Numbers of `config.timing.request_id` whose replies bring turns; none: every position has them.
+    pub turns_with: Option<&'static [u8]>,
     /// `status.line` has bits of the frame that are not position, no flags.
     pub has_special_bits: bool,
 }

@@ -32,7 +32,8 @@ const ENDAT: ProtocolRow = ProtocolRow {
     fields: &[],
     channels: None,
     part: None,
-    single_bits: None,
+    turns_at: None,
+    turns_with: None,
     has_special_bits: false,
 };
 

@@ -53,6 +53,7 @@ fn every_line_of_the_preset_is_explained() {
             "encoder = \"RCN 8510\"",
             "position_bits = 29",
             "command = \"111000\"",
+            "multi_turn_bits = 0",
         ]
         .contains(&line);
         assert!(

@@ -1,4 +1,4 @@
-//! Configurations and what is made of them, the pages, the packages, the decoders for sigrok, and the rules of the house.
+//! Configurations and what is made of them, the pages, the packages, the decoders for sigrok, turns that are counted on, and the rules of the house.
 
 mod boards;
 mod bus_card;
@@ -20,6 +20,11 @@ mod shmoo;
 mod sigrok;
 #[allow(dead_code, unused_imports)]
 mod tools;
+mod turns;
+
+#[allow(dead_code)] // the tests of hosts/ take the rest
+#[path = "hosts/desk.rs"]
+mod desk;
 
 mod bus {
     mod board;

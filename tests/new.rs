@@ -137,9 +137,9 @@ fn every_key_is_there_with_what_the_table_of_keys_says() {
 #[test]
 fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
     let dir = Dir::new("new");
-    // Protocol, bus, board, name, clock, channels, encoder, bits, command, EnDat clock, cable, rate, triggers, service, baud, reads.
+    // Protocol, bus, board, name, clock, channels, encoder, bits, those of angle and turns, command, EnDat clock, cable, rate, triggers, service, baud, reads.
     let lines =
-        "\nuart\nulx3s\n2cards\nmine\n0\n\n2\nROD 1\n99\n37\n000111\n4000000\nlong\n50\n\ntimre\ntimer, register\ninitialise\nrequests,initialise\n\n\n";
+        "\nuart\nulx3s\n2cards\nmine\n0\n\n2\nROD 1\n99\n37\n\n38\n12\n000111\n4000000\nlong\n50\n\ntimre\ntimer, register\ninitialise\nrequests,initialise\n\n\n";
     let output = asked(&dir, &[], lines);
     let told = text(&output.stderr);
     assert!(output.status.success(), "{told}");
@@ -147,6 +147,7 @@ fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
         "name = \"2cards\": ",
         "clock.system_hz = 0: outside ",
         "channel.position_bits = 99: outside 1..48",
+        "channel.multi_turn_bits = 38: ",
         "endat.cable_m = long: is not a number from 0 to ",
         "unknown trigger; use pin, timer, register",
         "service.parts = \"initialise\": every other part takes requests",
@@ -162,6 +163,7 @@ fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
     assert_eq!(card.card.channels.len(), 2);
     assert_eq!(card.encoders, ["ROD 1", "ROD 1"]);
     assert_eq!(card.card.channels[1].spec.clock_hz, 4_000_000);
+    assert_eq!(card.card.channels[1].turn_bits(), Some([25, 12]));
     let written = std::fs::read_to_string(&path).unwrap();
     assert!(
         written.contains("\nsources = [\"timer\", \"register\"]\n"),

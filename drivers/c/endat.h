@@ -170,6 +170,38 @@ int64_t endat_signed(uint64_t position, uint32_t width_bits);
 /** How far it is from one position to another, the shorter way round. */
 int64_t endat_difference(uint64_t from, uint64_t to, uint32_t width_bits);
 
+/** What a position is, as the card's configuration says: turns and an angle, or a place on a scale. */
+typedef struct {
+    uint32_t kind;             /**< ENDAT_MAP_CONFIG_LIMITS_RANGE_UNKNOWN, _ROTARY or _LINEAR; the other members are of ROTARY. */
+    uint32_t single_turn_bits; /**< Bits of the angle. */
+    uint32_t multi_turn_bits;  /**< Bits that count turns; 0: the encoder counts none. */
+    uint32_t turns_at;         /**< Lowest bit that counts turns. */
+} endat_range;
+
+/**
+ * Reads what the position of a channel is. With ENDAT_OK and the kind UNKNOWN the configuration does not say: give the members yourself,
+ * or ask the name plate of an EnDat encoder.
+ */
+endat_error endat_read_range(const endat_card *card, uint32_t channel, endat_range *range);
+/**
+ * Takes a position apart.
+ * @param range what it is.
+ * @param position of a result or a sample.
+ * @param turn which turn, 0 if the encoder counts none.
+ * @param step place within the turn: 1 << single_turn_bits steps are a turn.
+ * @return ENDAT_NOTHING if it is no rotary one, and both are 0.
+ */
+endat_error endat_turns(const endat_range *range, uint64_t position, uint32_t *turn, uint64_t *step);
+/**
+ * Steps from one position to another: the shorter way round, past turns and the end of their count, or along a scale.
+ * @param range what they are.
+ * @param from a position.
+ * @param to another one.
+ * @param steps how far it is.
+ * @return ENDAT_NOTHING if nobody says what they are, and it is 0.
+ */
+endat_error endat_moved(const endat_range *range, uint64_t from, uint64_t to, int64_t *steps);
+
 /** What a channel speaks, ENDAT_PROTOCOL_...; of a channel that the card does not have EnDat. */
 uint32_t endat_protocol(const endat_card *card, uint32_t channel);
 

@@ -1,6 +1,6 @@
 /**
  * @file endat_map.h
- * Register map 1.0.0 of every card, whatever its configuration.
+ * Register map 1.1.0 of every card, whatever its configuration.
  *
  * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test cards driver writes it again.
  *
@@ -11,7 +11,7 @@
 
 /* Version of the register map; within a major version no address and no field moves. */
 #define ENDAT_MAP_MAJOR 1u
-#define ENDAT_MAP_MINOR 0u
+#define ENDAT_MAP_MINOR 1u
 #define ENDAT_MAP_PATCH 0u
 /* Encoder ports of the largest card */
 #define ENDAT_MAP_CHANNELS_MAX 8u
@@ -564,7 +564,7 @@
 /* skip: Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources */
 #define ENDAT_MAP_CONFIG_FRAME_SKIP_SHIFT 11u
 #define ENDAT_MAP_CONFIG_FRAME_SKIP_MASK 0x0000F800u
-/* position_bits: Position width, 1..48; T-format: no meaning, as command (bits) */
+/* position_bits: Position width, 1..48; T-format: bits of angle and turns together if limits.range says rotary, else no meaning, as command (bits) */
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_SHIFT 16u
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MASK 0x003F0000u
 /* ignore_pin: 1: the trigger pin is not for this channel */
@@ -588,12 +588,15 @@
 #define ENDAT_MAP_CONFIG_FRAME_IGNORE_REGISTER_SHIFT 30u
 #define ENDAT_MAP_CONFIG_FRAME_IGNORE_REGISTER_MASK 0x40000000u
 
-/* rw: First low phase and tolerance of the start bit. */
+/* rw: First low phase and tolerance of the start bit; bits that count turns. */
 #define ENDAT_MAP_CONFIG_TIMING_WORD(channel) (0x109u + 8u * (channel))
 #define ENDAT_MAP_CONFIG_TIMING_BYTE(channel) (0x0424u + 32u * (channel))
 /* first_low_extra_cycles: First low phase minus half a period (tST) (cycles) */
 #define ENDAT_MAP_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_SHIFT 0u
 #define ENDAT_MAP_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_MASK 0x000007FFu
+/* multi_turn_bits: Upper bits of the position that count turns, if limits.range says rotary; for the host only. T-format: of bits 47..24, up to 24 (bits) */
+#define ENDAT_MAP_CONFIG_TIMING_MULTI_TURN_BITS_SHIFT 11u
+#define ENDAT_MAP_CONFIG_TIMING_MULTI_TURN_BITS_MASK 0x0000F800u
 /* start_window_cycles: The start edge must come within plus or minus this of its expected phase (cycles) */
 #define ENDAT_MAP_CONFIG_TIMING_START_WINDOW_CYCLES_SHIFT 16u
 #define ENDAT_MAP_CONFIG_TIMING_START_WINDOW_CYCLES_MASK 0x003F0000u
@@ -607,12 +610,18 @@
 #define ENDAT_MAP_CONFIG_TIMING_REQUEST_ID_SHIFT 28u
 #define ENDAT_MAP_CONFIG_TIMING_REQUEST_ID_MASK 0xF0000000u
 
-/* rw: Longest waits. */
+/* rw: Longest waits; what the position is. */
 #define ENDAT_MAP_CONFIG_LIMITS_WORD(channel) (0x10Au + 8u * (channel))
 #define ENDAT_MAP_CONFIG_LIMITS_BYTE(channel) (0x0428u + 32u * (channel))
 /* start_timeout_us: Longest wait for the start bit after the turnaround; T-format: longest pause before the reply, 1..63 (us) */
 #define ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_SHIFT 0u
 #define ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_MASK 0x00000FFFu
+/* range: What the position is; for the host only */
+#define ENDAT_MAP_CONFIG_LIMITS_RANGE_SHIFT 12u
+#define ENDAT_MAP_CONFIG_LIMITS_RANGE_MASK 0x00003000u
+#define ENDAT_MAP_CONFIG_LIMITS_RANGE_UNKNOWN 0u /* not given: the encoder's name plate has it, or nobody */
+#define ENDAT_MAP_CONFIG_LIMITS_RANGE_ROTARY 1u /* multi_turn_bits count turns, the bits below them the angle */
+#define ENDAT_MAP_CONFIG_LIMITS_RANGE_LINEAR 2u /* no bit counts turns, and the position does not wrap */
 /* recovery_limit_cycles: DATA must fall within this after the frame (tm) (cycles) */
 #define ENDAT_MAP_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES_SHIFT 16u
 #define ENDAT_MAP_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES_MASK 0x1FFF0000u
@@ -636,9 +645,17 @@
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MIN 1u
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MAX 48u
 
+/* What position_bits takes on a T-format channel */
+#define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_T_FORMAT_MIN 1u
+#define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_T_FORMAT_MAX 48u
+
 /* What position_bits takes on an SSI channel */
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_SSI_MIN 1u
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_SSI_MAX 48u
+
+/* What multi_turn_bits takes on a T-format channel */
+#define ENDAT_MAP_CONFIG_TIMING_MULTI_TURN_BITS_T_FORMAT_MIN 0u
+#define ENDAT_MAP_CONFIG_TIMING_MULTI_TURN_BITS_T_FORMAT_MAX 24u
 
 /* What start_timeout_us takes on a T-format channel */
 #define ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_T_FORMAT_MIN 1u

@@ -1,6 +1,6 @@
 /**
  * @file endat_settings.c
- * Settings of channels, triggers and interrupts.
+ * Settings of channels, triggers and interrupts; what positions are.
  */
 #include "endat.h"
 #include "endat_internal.h"
@@ -203,6 +203,84 @@ endat_error endat_take_interrupts(const endat_card *card, uint32_t *events)
     /* Only what has been seen: an event of this moment stays. */
     if ((error == ENDAT_OK) && (*events != 0u)) {
         error = endat_write_word(card, ENDAT_MAP_INTERRUPT_CLEAR_WORD, *events);
+    }
+    return error;
+}
+
+static uint64_t lowest(uint32_t bits)
+{
+    return (bits < 64u) ? (((uint64_t)1 << bits) - 1u) : UINT64_MAX;
+}
+
+/** Lowest bit of turns in a position of T-format, and bits of a position. */
+#define T_FORMAT_TURNS_AT 24u
+#define POSITION_BITS 48u
+
+/** Whether the protocol's positions have room for it. */
+static bool is_range(const endat_range *range, bool is_t_format)
+{
+    const uint32_t most = is_t_format ? T_FORMAT_TURNS_AT : POSITION_BITS;
+
+    return (range->single_turn_bits > 0u) && (range->single_turn_bits <= most) &&
+           ((range->turns_at + range->multi_turn_bits) <= POSITION_BITS);
+}
+
+endat_error endat_read_range(const endat_card *card, uint32_t channel, endat_range *range)
+{
+    uint32_t words[ENDAT_SETTINGS_WORDS] = {0u, 0u, 0u};
+    const bool is_t_format = endat_protocol(card, channel) == ENDAT_PROTOCOL_T_FORMAT;
+    endat_error error = (channel < card->channels) ? ENDAT_OK : ENDAT_ERROR_ARGUMENT;
+
+    if (error == ENDAT_OK) {
+        error = endat_read_settings_words(card, channel, words);
+    }
+    const uint32_t bits = ENDAT_MAP_GET(ENDAT_MAP_CONFIG_FRAME_POSITION_BITS, words[0]);
+    const uint32_t turns = ENDAT_MAP_GET(ENDAT_MAP_CONFIG_TIMING_MULTI_TURN_BITS, words[1]);
+    const uint32_t asked = ENDAT_MAP_GET(ENDAT_MAP_CONFIG_TIMING_REQUEST_ID, words[1]);
+    const uint32_t single = (bits > turns) ? (bits - turns) : 0u;
+    /* Other requests of T-format bring no turns: those in a position are as old as the last that brought some. */
+    const bool has_turns = !is_t_format || (asked == ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING) ||
+                           (asked == ENDAT_MAP_T_FORMAT_SEND_ID_MULTI_TURN);
+
+    range->kind = ENDAT_MAP_GET(ENDAT_MAP_CONFIG_LIMITS_RANGE, words[2]);
+    range->single_turn_bits = single;
+    range->multi_turn_bits = has_turns ? turns : 0u;
+    range->turns_at = is_t_format ? T_FORMAT_TURNS_AT : single;
+    if ((range->kind != ENDAT_MAP_CONFIG_LIMITS_RANGE_ROTARY) || !is_range(range, is_t_format)) {
+        range->kind = (range->kind == ENDAT_MAP_CONFIG_LIMITS_RANGE_LINEAR) ? range->kind : ENDAT_MAP_CONFIG_LIMITS_RANGE_UNKNOWN;
+        range->single_turn_bits = 0u;
+        range->multi_turn_bits = 0u;
+        range->turns_at = 0u;
+    }
+    return error;
+}
+
+endat_error endat_turns(const endat_range *range, uint64_t position, uint32_t *turn, uint64_t *step)
+{
+    const bool is_rotary = range->kind == ENDAT_MAP_CONFIG_LIMITS_RANGE_ROTARY;
+
+    *turn = is_rotary ? (uint32_t)((position >> range->turns_at) & lowest(range->multi_turn_bits)) : 0u;
+    *step = is_rotary ? (position & lowest(range->single_turn_bits)) : 0u;
+    return is_rotary ? ENDAT_OK : ENDAT_NOTHING;
+}
+
+endat_error endat_moved(const endat_range *range, uint64_t from, uint64_t to, int64_t *steps)
+{
+    uint32_t turns[2] = {0u, 0u};
+    uint64_t angles[2] = {0u, 0u};
+    endat_error error = ENDAT_OK;
+
+    *steps = 0;
+    if (range->kind == ENDAT_MAP_CONFIG_LIMITS_RANGE_LINEAR) {
+        *steps = endat_difference(from, to, 64u);
+    } else {
+        error = endat_turns(range, from, &turns[0], &angles[0]);
+    }
+    if ((error == ENDAT_OK) && (range->kind == ENDAT_MAP_CONFIG_LIMITS_RANGE_ROTARY)) {
+        (void)endat_turns(range, to, &turns[1], &angles[1]);
+        const uint32_t bits = range->single_turn_bits;
+        *steps = endat_difference(((uint64_t)turns[0] << bits) | angles[0], ((uint64_t)turns[1] << bits) | angles[1],
+                                  bits + range->multi_turn_bits);
     }
     return error;
 }

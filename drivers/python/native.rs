@@ -8,6 +8,8 @@ use endat_host::feed::{cause_codes, NO_CAUSES};
 use endat_host::mailbox::Request;
 use endat_host::name_plate::NamePlate;
 use endat_host::owner::{Handle, Owner};
+use endat_host::range::{self, Ranges};
+use endat_host::units::Scale;
 use endat_host::HostError;
 use endat_regs::Part;
 use pyo3::prelude::*;
@@ -16,13 +18,23 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Opens a port.
 #[pyfunction]
-pub fn connect(py: Python<'_>, port: String, baud: u32) -> PyResult<NativeCard> {
+pub fn connect(
+    py: Python<'_>,
+    port: String,
+    baud: u32,
+    ranges: Vec<String>,
+) -> PyResult<NativeCard> {
     if port.is_empty() {
         let text = "port = \"\": is empty; give the card's serial port, tcp:HOST:PORT or virtual";
         return Err(Fault::new(Kind::BadInput, text).into());
     }
     let is_real = !is_virtual(&port);
-    let find = move || card_at(&port, baud);
+    let ranges = Ranges::parse(&ranges).map_err(Fault::from)?;
+    let find = move || {
+        let mut card = card_at(&port, baud)?;
+        card.set_ranges(ranges)?;
+        Ok(card)
+    };
     let handle =
         py.detach(|| Handle::open(find, is_real, look).map(|r| r.map_err(Fault::from)))??;
     Ok(NativeCard(Mutex::new(Some(handle))))
@@ -40,6 +52,11 @@ pub fn explain_cause(name: &str) -> Option<String> {
     let other = NO_CAUSES.iter().find(|(known, _)| *known == name);
     let known = || causes::advice(name).map(|[means, then]| format!("{means}; {then}"));
     other.map(|(_, means)| (*means).to_owned()).or_else(known)
+}
+
+/// What makes known what positions of a channel are.
+fn remedy(channel: usize) -> String {
+    format!("give connect() ranges={{{channel}: \"SINGLE+MULTI\"}} (bits of the angle and bits that count turns, as in {{{channel}: \"17+16\"}}) or {{{channel}: \"linear\"}}")
 }
 
 /// Lets Ctrl-C through.
@@ -126,16 +143,37 @@ impl NativeCard {
         Ok(all)
     }
 
-    /// Unit and digits behind the point of each channel.
-    fn units(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, usize, Option<f64>)>> {
-        self.call(py, |w| {
+    /// What positions of each channel are.
+    fn scales<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let scales = self.call(py, |w| {
             w.scales = w.card.scales()?;
-            let units = w
-                .scales
-                .iter()
-                .map(|s| (s.convert(0).unit, s.digits(), s.wraps_at()));
-            Ok(units.collect())
-        })
+            Ok(w.scales.clone())
+        })?;
+        let all = PyList::empty(py);
+        for (n, scale) in scales.iter().enumerate() {
+            let why = || format!("{}; {}", range::unknown(n), remedy(n));
+            let one = PyDict::new(py);
+            one.set_item("unit", scale.convert(0).unit)?;
+            one.set_item("digits", scale.digits())?;
+            one.set_item("wraps_at", scale.wraps_at())?;
+            one.set_item("turns", scale.turns())?;
+            let steps = scale.range().zip(scale.turns());
+            one.set_item(
+                "steps_per_turn",
+                steps.map(|(range, turns)| range / turns.max(1)),
+            )?;
+            let linear = matches!(scale, Scale::Linear { .. } | Scale::Counted);
+            one.set_item("linear", linear)?;
+            let unknown = (!scale.is_known()).then(why);
+            one.set_item("unknown", unknown)?;
+            all.append(one)?;
+        }
+        Ok(all)
+    }
+
+    /// What was found out about positions that the configuration has wrong.
+    fn scale_notes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        self.call(py, |w| w.card.scale_notes())
     }
 
     /// Latest results of all channels, of one moment.

@@ -33,6 +33,7 @@ mod link;
 mod map;
 mod parallel;
 mod plate;
+mod range;
 mod result;
 mod service;
 mod settings;
@@ -50,6 +51,7 @@ pub use facts::Facts;
 pub use link::{Link, Mapped};
 pub use parallel::{Parallel, Registers};
 pub use plate::{NamePlate, Number};
+pub use range::{Range, Turns};
 pub use result::{
     difference, readings, signed, AdditionalData, Moment, Reading, MOMENT_WORDS, RESULT_WORDS,
 };

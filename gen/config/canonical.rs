@@ -104,7 +104,7 @@ pub fn of_card(
         }
     }
     for (n, c) in channels.iter().enumerate() {
-        let facts = of_channel(c, *system_hz).into_iter();
+        let facts = of_channel(c, *system_hz).into_iter().chain(of_range(c));
         lines.extend(facts.map(|fact| format!("channel {n} {fact}")));
     }
     if card.own_triggers() {
@@ -209,6 +209,14 @@ fn of_service(service: &ServiceParts) -> Vec<String> {
         lines.push(format!("service infos {infos:?}"));
     }
     lines
+}
+
+/// What the position is; nothing if that is not said.
+fn of_range(channel: &ChannelConfig) -> Option<String> {
+    match channel.turn_bits() {
+        Some([single, multi]) => Some(format!("turns {single} {multi}")),
+        None => channel.spec.range.map(|_| "linear".to_owned()),
+    }
 }
 
 fn of_channel(channel: &ChannelConfig, system_hz: u64) -> Vec<String> {

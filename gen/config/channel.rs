@@ -5,7 +5,7 @@ use super::reader::{At, Table};
 use super::trigger;
 use crate::form::key::Key;
 use crate::other_protocol::Other;
-use endat_hdl::config::{limits, ChannelSpec, START_WINDOW_BITS};
+use endat_hdl::config::{limits, ChannelSpec, Limits, PositionRange, START_WINDOW_BITS};
 use endat_hdl::endat::timing::cycles_at_most;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::protocols::Spoken;
@@ -73,6 +73,7 @@ pub fn read_endat(
     let encoder = read_encoder(table);
     let own = trigger::read_own(table);
     let position = table.required_integer(&POSITION_BITS, &POSITION_BITS.limits(system_hz));
+    let range = read_range(table, Protocol::Endat, position.as_ref().map(|at| at.value));
     let command = table.required_string(&COMMAND);
     let command = command.and_then(|c| read_command(table, c));
     let mut keys = defaults.clone();
@@ -101,6 +102,8 @@ pub fn read_endat(
     let mut values = BTreeMap::new();
     let mut places = Places::new();
     let (own, divider_line) = own?;
+    let (range, range_places) = range?;
+    places.extend(range_places);
     places.insert(DIVIDER.name, (table.name(DIVIDER.name), divider_line));
     for (key, written) in keys {
         let (path, at) = written?;
@@ -128,6 +131,7 @@ pub fn read_endat(
         cable_m: usual(&CABLE),
         spoken: Spoken::Endat,
         trigger: own,
+        range,
     };
     Some(Channel {
         spec,
@@ -145,8 +149,10 @@ pub fn read_other(
     let encoder = read_encoder(table);
     let wanted = other.read(table, system_hz);
     let own = trigger::read_own(table);
+    let width = wanted.as_ref().map(|wanted| wanted.spec.position_bits);
+    let range = read_range(table, other.protocol(), width);
     let (encoder, wanted, (own, divider_line)) = (encoder?, wanted?, own?);
-    let mut places = Places::new();
+    let (range, mut places) = range?;
     places.insert(DIVIDER.name, (table.name(DIVIDER.name), divider_line));
     for (key, line) in wanted.lines {
         places.insert(key, (table.name(key), line));
@@ -155,6 +161,7 @@ pub fn read_other(
     Some(Channel {
         spec: ChannelSpec {
             trigger: own,
+            range,
             ..wanted.spec
         },
         encoder,
@@ -185,6 +192,69 @@ pub fn read_encoder(table: &Table<'_, '_>) -> Option<String> {
     let shown = format!("{:?}", encoder.value);
     table.complain(encoder.line, ENCODER.name, &shown, &text);
     None
+}
+
+/// What the position is, if that is said, and where; none if what is wrong leaves nothing to judge. `width`: bits of the position, where
+/// angle and turns share it.
+fn read_range(
+    table: &Table<'_, '_>,
+    protocol: Protocol,
+    width: Option<u64>,
+) -> Option<(Option<PositionRange>, Places)> {
+    let mut places = Places::new();
+    let mut number = |key: &'static Key, limits: Limits| {
+        let at = table.integer(key, &limits);
+        let line = at.as_ref().map_or(table.line, |at| at.line);
+        places.insert(key.name, (table.name(key.name), line));
+        at
+    };
+    let (usual_single, usual_multi) = (SINGLE_TURN_BITS.limits(None), MULTI_TURN_BITS.limits(None));
+    let turns_at = protocol.row().turns_at.map(u64::from);
+    let most = turns_at.or(width.map(|width| width.saturating_sub(1)));
+    let multi = number(
+        &MULTI_TURN_BITS,
+        usual_multi.at_most(most.unwrap_or(u64::MAX), ""),
+    );
+    let rest = width.and_then(|width| width.checked_sub(multi.as_ref().map_or(0, |at| at.value)));
+    let single = number(
+        &SINGLE_TURN_BITS,
+        match (turns_at, rest) {
+            (Some(most), _) => usual_single.at_most(most, ""),
+            // What is left.
+            (None, Some(rest)) => Limits::new(rest..=rest),
+            (None, None) => usual_single,
+        },
+    );
+    let linear = table.boolean(&LINEAR);
+    let is_linear = linear.as_ref().is_some_and(|at| at.value);
+    let has = |key: &Key| table.has(key.name);
+    if is_linear && (has(&SINGLE_TURN_BITS) || has(&MULTI_TURN_BITS)) {
+        let line = linear.as_ref().map_or(table.line, |at| at.line);
+        let text = format!(
+            "a scale has no turns; remove it, or {} and {}",
+            SINGLE_TURN_BITS.name, MULTI_TURN_BITS.name
+        );
+        table.complain(line, LINEAR.name, "true", &text);
+        return None;
+    }
+    if has(&MULTI_TURN_BITS) && !has(&SINGLE_TURN_BITS) && turns_at.is_some() {
+        let line = multi.as_ref().map_or(table.line, |at| at.line);
+        let value = multi.map_or(String::new(), |at| at.value.to_string());
+        let name = SINGLE_TURN_BITS.name;
+        let text = format!("counts turns of an angle; add {name}, or remove it");
+        table.complain(line, MULTI_TURN_BITS.name, &value, &text);
+        return None;
+    }
+    let range = match (single, multi) {
+        (None, _) if has(&SINGLE_TURN_BITS) => return None,
+        (None, None) => is_linear.then_some(PositionRange::Linear),
+        // Without bits of its own the angle has the rest.
+        (single, multi) => Some(PositionRange::Rotary {
+            single_turn_bits: single.map(|at| at.value),
+            multi_turn_bits: multi.map_or(0, |at| at.value),
+        }),
+    };
+    Some((range, places))
 }
 
 /// A quarter of a period, as far as the counter of the start window reaches.

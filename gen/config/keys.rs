@@ -98,6 +98,14 @@ keys! {
         .one_of(protocols).usual(Usual::Word(Protocol::Endat.row().word));
     POSITION_BITS = Key::number(CHANNEL, "position_bits", "width of the position, from the encoder's data sheet")
         .of(CLOCKED).required("29");
+    SINGLE_TURN_BITS = Key::number(CHANNEL, "single_turn_bits", "bits of the angle within a turn, from the encoder's data sheet: hosts count turns and differences with it")
+        .note("those of `position_bits` that `multi_turn_bits` leaves, if only that is given; T-format: up to 24 of bits 23..0. The name plate of an EnDat encoder has it, too, \
+               where the card reads it (`\"initialise\"`); it takes no logic")
+        .of(CARD_FORM).usual(Usual::Follows("not known: no angles, no turns counted on"));
+    MULTI_TURN_BITS = Key::number(CHANNEL, "multi_turn_bits", "bits that count turns, above those of the angle")
+        .note("T-format: up to 24 of bits 47..24, and takes `single_turn_bits`").of(CARD_FORM).usual(Usual::Follows("0 with `single_turn_bits`, else not known"));
+    LINEAR = Key::boolean(CHANNEL, "linear", "whether the position is a place on a scale, which does not wrap")
+        .note("instead of `single_turn_bits`").of(CARD_FORM).usual(Usual::Boolean(false));
     COMMAND = Key::text(CHANNEL, "command", "mode command that a trigger sends").one_of(commands).of(ENDAT_FORM).required("\"111000\"");
     ENABLED = Key::boolean(CHANNEL, "enabled", "whether the channel takes triggers")
         .note("this key or one of the next two in any `[[channel]]` gives all channels of the card their own trigger, which the host can change \

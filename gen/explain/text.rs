@@ -113,6 +113,11 @@ impl fmt::Display for Report {
         for (n, own) in self.own_triggers.iter().enumerate() {
             writeln!(f, "  of channel {n}     {own}")?;
         }
+        for (n, range) in self.ranges.iter().enumerate() {
+            if let Some(range) = range {
+                writeln!(f, "turns of port {n}    {range}")?;
+            }
+        }
         if let Some(link) = &self.link {
             writeln!(f, "host link          {}", rate(&link.baud, "bit/s"))?;
             writeln!(

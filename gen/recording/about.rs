@@ -11,6 +11,8 @@ use std::time::SystemTime;
 
 /// Form of this description.
 const FORM: &str = "endat recording 1";
+/// Bits of a position.
+const POSITION_BITS: u32 = endat_regs::protocol::MAX_POSITION_BITS;
 /// Under this name it stands in a file.
 pub const KEY: &str = "endat";
 
@@ -22,8 +24,6 @@ pub struct About {
     pub identity: Identity,
     /// Name plates of its encoders.
     pub plates: Vec<Option<NamePlate>>,
-    /// Positions begin anew after so many.
-    pub ranges: Vec<Option<u64>>,
     /// One of so many rows is kept, and every one with a fault.
     pub every: u64,
     /// Names that have an event of their own.
@@ -32,42 +32,65 @@ pub struct About {
     pub start: SystemTime,
 }
 
-/// Bits of counts within a turn where a description does not tell: those of recordings that have been made before it did.
-const COUNTS_BITS: u32 = 24;
+/// Lowest bit of turns where a description of counts does not tell: those of recordings that have been made before it did.
+const TURNS_AT: u32 = 24;
 
-/// What a measuring step is, as numbers.
-fn scale(scale: &Scale, range: Option<u64>) -> Value {
+/// What positions are, as numbers.
+fn scale(scale: &Scale) -> Value {
     let mut object = json!({"unit": scale.convert(0).unit});
     match *scale {
-        Scale::Rotary { steps_per_turn } => object["steps_per_turn"] = json!(steps_per_turn),
-        Scale::Linear { step_nm } => object["step_nm"] = json!(step_nm),
-        Scale::Counts { single_bits } => object["single_bits"] = json!(single_bits),
+        Scale::Rotary {
+            steps_per_turn,
+            turns,
+            turns_at,
+        } => {
+            object["steps_per_turn"] = json!(steps_per_turn);
+            object["turns"] = json!(turns);
+            if turns_at.is_some() {
+                object["turns_at"] = json!(turns_at);
+            }
+        }
+        Scale::Linear { step_nm } => {
+            object["linear"] = json!(true);
+            object["step_nm"] = json!(step_nm);
+        }
+        Scale::Counted => object["linear"] = json!(true),
+        Scale::Counts { turns_at } => object["turns_at"] = json!(turns_at),
     }
-    if let Some(range) = range {
+    if let Some(range) = scale.range() {
         object["range"] = json!(range);
     }
     object
 }
 
-/// The scale, and after how many positions it begins anew, of what a channel of a description says.
-pub fn scale_of(object: &Value) -> Option<(Scale, Option<u64>)> {
-    let scale = match (
-        object["steps_per_turn"].as_u64(),
-        object["step_nm"].as_f64(),
-    ) {
-        (Some(steps_per_turn), _) => Scale::Rotary { steps_per_turn },
-        (None, Some(step_nm)) => Scale::Linear { step_nm },
-        (None, None) if object["unit"] == "counts" => {
-            let told = object["single_bits"]
-                .as_u64()
-                .and_then(|n| n.try_into().ok());
-            Scale::Counts {
-                single_bits: told.filter(|n| *n < u64::BITS).unwrap_or(COUNTS_BITS),
-            }
-        }
-        (None, None) => return None,
+/// What positions are, of what a channel of a description says.
+pub fn scale_of(object: &Value) -> Option<Scale> {
+    let bit = |name: &str| {
+        let told = object[name].as_u64().and_then(|n| n.try_into().ok());
+        told.filter(|n: &u32| *n < u64::BITS)
     };
-    Some((scale, object["range"].as_u64()))
+    if let Some(steps_per_turn) = object["steps_per_turn"].as_u64() {
+        // Older descriptions have the product alone.
+        let range = object["range"].as_u64();
+        let turns = range.map(|range| range / steps_per_turn.max(1));
+        return Some(Scale::Rotary {
+            steps_per_turn,
+            turns: object["turns"].as_u64().or(turns).unwrap_or(1).max(1),
+            turns_at: bit("turns_at"),
+        });
+    }
+    if let Some(step_nm) = object["step_nm"].as_f64() {
+        return Some(Scale::Linear { step_nm });
+    }
+    if object["linear"] == true {
+        return Some(Scale::Counted);
+    }
+    (object["unit"] == "counts").then(|| Scale::Counts {
+        turns_at: match object.get("turns_at") {
+            Some(_) => bit("turns_at"),
+            None => Some(bit("single_bits").unwrap_or(TURNS_AT)).filter(|at| *at < POSITION_BITS),
+        },
+    })
 }
 
 /// What a name plate says.
@@ -87,7 +110,7 @@ impl About {
     /// Everything, of file `part` of a recording.
     pub fn json(&self, layout: &Layout, is_text: bool, part: u32) -> Value {
         let channels = layout.scales.iter().enumerate().map(|(n, one)| {
-            let mut object = scale(one, self.ranges.get(n).copied().flatten());
+            let mut object = scale(one);
             object["protocol"] = json!(self.identity.protocol(n).name());
             if let Some(known) = self.plates.get(n).and_then(Option::as_ref) {
                 object["encoder"] = plate(known);
@@ -151,4 +174,54 @@ fn columns(layout: &Layout, is_text: bool, system_hz: u32) -> Value {
         .into_iter()
         .map(|(name, unit, is)| (name, json!({"unit": unit, "is": is})));
     Value::Object(objects.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_positions_are_is_read_as_it_was_written() {
+        for one in [
+            Scale::singleturn(29),
+            Scale::of_bits(25, 12, None),
+            Scale::of_bits(17, 16, Some(24)),
+            Scale::Linear { step_nm: 10.0 },
+            Scale::Counted,
+            Scale::Counts { turns_at: Some(24) },
+            Scale::Counts { turns_at: None },
+        ] {
+            assert_eq!(scale_of(&scale(&one)), Some(one), "{one}");
+        }
+    }
+
+    /// Catches a recording of an older program whose turns are counted in another way than then, or whose counts are taken for known.
+    #[test]
+    fn older_descriptions_mean_what_they_meant() {
+        for (told, wanted) in [
+            (
+                json!({"unit": "deg", "steps_per_turn": 1 << 25, "range": 1u64 << 37}),
+                Some(Scale::of_bits(25, 12, None)),
+            ),
+            (
+                json!({"unit": "deg", "steps_per_turn": 1 << 29}),
+                Some(Scale::singleturn(29)),
+            ),
+            (
+                json!({"unit": "counts", "single_bits": 24}),
+                Some(Scale::Counts { turns_at: Some(24) }),
+            ),
+            (
+                json!({"unit": "counts", "single_bits": 48}),
+                Some(Scale::Counts { turns_at: None }),
+            ),
+            (
+                json!({"unit": "counts"}),
+                Some(Scale::Counts { turns_at: Some(24) }),
+            ),
+            (json!({}), None),
+        ] {
+            assert_eq!(scale_of(&told), wanted, "{told}");
+        }
+    }
 }

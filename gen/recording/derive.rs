@@ -8,6 +8,7 @@ use crate::number::decimal;
 use endat_host::did_you_mean::guess;
 use endat_host::feed::Row;
 use endat_host::motion::{nearest, Unwrap, Velocity, VELOCITY_OVER_S};
+use endat_host::range;
 use endat_host::units::Scale;
 
 /// What can be done, and how it is written.
@@ -48,7 +49,6 @@ enum Step {
 struct Derived {
     channels: (usize, Option<usize>),
     scale: Scale,
-    range: Option<u64>,
     steps: Vec<Step>,
     column: DerivedColumn,
 }
@@ -101,8 +101,8 @@ impl Step {
             ));
         }
         Ok(Some(match name {
-            "unwrap" if of.range.is_none() => Self::Same,
-            "unwrap" => Self::Unwrap(Unwrap::new(of.range)),
+            "unwrap" if of.scale.range().is_none() => Self::Same,
+            "unwrap" => Self::Unwrap(Unwrap::new(of.scale.range())),
             "zero" => Self::Zero(None),
             "negate" => Self::Negate,
             "offset" => Self::Offset(number()?),
@@ -205,7 +205,7 @@ fn source(spec: &str, text: &str, scales: &[Scale]) -> Result<(usize, Option<usi
 }
 
 impl Derived {
-    fn parse(spec: &str, scales: &[Scale], ranges: &[Option<u64>]) -> Result<Self, GenError> {
+    fn parse(spec: &str, scales: &[Scale]) -> Result<Self, GenError> {
         let (name, rest) = spec
             .split_once('=')
             .ok_or_else(|| wrong(spec, "has no name; write NAME=0:unwrap:zero"))?;
@@ -223,7 +223,6 @@ impl Derived {
         let mut derived = Self {
             channels,
             scale,
-            range: ranges.get(channels.0).copied().flatten(),
             steps: Vec::new(),
             column: DerivedColumn {
                 name: name.to_owned(),
@@ -256,28 +255,43 @@ impl Derived {
             }
             derived.steps.push(step);
         }
+        derived.check_known(spec)?;
         let is_whole = derived.steps.iter().all(Step::is_exact);
         derived.column.digits = is_whole.then(|| scale.digits());
         derived.column.unit = unit;
         Ok(derived)
     }
 
+    /// Refuses what counts on, or compares, positions of which nobody says where they begin anew.
+    fn check_known(&self, spec: &str) -> Result<(), GenError> {
+        let counts = |step: &Step| matches!(step, Step::Same | Step::Unwrap(_) | Step::Velocity(_));
+        let is_needed = self.channels.1.is_some() || self.steps.iter().any(counts);
+        if self.scale.is_known() || !is_needed {
+            return Ok(());
+        }
+        let unknown = range::unknown(self.channels.0);
+        let remedy = range::remedy(self.channels.0);
+        Err(wrong(spec, &format!("{unknown}; {remedy}")))
+    }
+
     fn value(&mut self, row: &Row, time_s: f64) -> Option<f64> {
         let position = |n: usize| {
             let cell = row.cells.get(n)?;
             let position = cell.position.filter(|_| cell.fresh)?;
-            Some(self.scale.steps(position))
+            let is_possible = self.scale.is_possible(position);
+            is_possible.then(|| self.scale.steps(position))
         };
+        let range = self.scale.range();
         let steps = match self.channels {
             (one, None) => position(one)?.into(),
             // Of two on a turn the difference is the short way round.
             (one, Some(other)) => {
                 let difference = i128::from(position(one)?) - i128::from(position(other)?);
-                self.range.map_or(difference, |r| nearest(difference, r))
+                range.map_or(difference, |r| nearest(difference, r))
             }
         };
         // A difference is counted on from what is within the range.
-        let mut value = match (self.range, self.steps.first()) {
+        let mut value = match (range, self.steps.first()) {
             (Some(range), Some(Step::Unwrap(_))) => Value::Steps(steps.rem_euclid(range.into())),
             _ => Value::Steps(steps),
         };
@@ -293,15 +307,10 @@ impl Derived {
 
 impl Derivation {
     /// What these ask for.
-    pub fn parse(
-        specs: &[String],
-        scales: &[Scale],
-        ranges: &[Option<u64>],
-        taken: &[String],
-    ) -> Result<Self, GenError> {
+    pub fn parse(specs: &[String], scales: &[Scale], taken: &[String]) -> Result<Self, GenError> {
         let mut all: Vec<Derived> = Vec::new();
         for spec in specs {
-            let one = Derived::parse(spec, scales, ranges)?;
+            let one = Derived::parse(spec, scales)?;
             let column = one.column.column();
             let is_twice = all.iter().any(|other| other.column.column() == column);
             if is_twice || taken.contains(&column) {
@@ -339,7 +348,7 @@ mod tests {
 
     fn derived(spec: &str) -> Result<Derivation, GenError> {
         let scales = [Scale::singleturn(BITS); 2];
-        Derivation::parse(&[spec.to_owned()], &scales, &[Some(TURN); 2], &[])
+        Derivation::parse(&[spec.to_owned()], &scales, &[])
     }
 
     /// Values of rows that are a second apart.
@@ -431,6 +440,24 @@ mod tests {
         );
         let column = &derived("v=0:unwrap:velocity").unwrap().columns()[0];
         assert_eq!(column.column(), "v_deg_per_s");
+    }
+
+    #[test]
+    fn a_turn_of_unknown_length_is_not_counted_on() {
+        let turns_at = Some(24);
+        let ask = |spec: &str, scale: Scale| {
+            let done = Derivation::parse(&[spec.to_owned()], &[scale; 2], &[]);
+            done.map_err(|e| e.messages()[0].clone())
+        };
+        for spec in ["t=1:unwrap", "v=1:velocity", "d=1-0"] {
+            let why = ask(spec, Scale::Counts { turns_at }).unwrap_err();
+            assert!(why.starts_with(&format!("--derive = {spec}: ")), "{why}");
+            assert!(why.contains("--range 1=SINGLE+MULTI"), "{why}");
+            for known in [Scale::of_bits(17, 16, turns_at), Scale::Counted] {
+                assert!(ask(spec, known).is_ok(), "{spec} {known}");
+            }
+        }
+        assert!(ask("z=1:zero:scale=2", Scale::Counts { turns_at }).is_ok());
     }
 
     #[test]

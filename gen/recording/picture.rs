@@ -41,25 +41,26 @@ pub struct Measurement {
     pub derived: Vec<Option<f64>>,
 }
 
-/// Makes measurements of rows: turns are counted on.
+/// Makes measurements of rows: turns are counted on where it is known what a turn is.
 pub struct Counter {
     scales: Vec<Scale>,
     turns: Vec<Unwrap>,
 }
 
 impl Counter {
-    /// Of channels with these scales, whose positions begin anew after so many.
-    pub fn new(scales: &[Scale], ranges: &[Option<u64>]) -> Self {
+    /// Of channels with these scales.
+    pub fn new(scales: &[Scale]) -> Self {
         Self {
             scales: scales.to_vec(),
-            turns: ranges.iter().map(|range| Unwrap::new(*range)).collect(),
+            turns: scales.iter().map(|s| Unwrap::new(s.range())).collect(),
         }
     }
 
     /// The position of a channel, counted on.
     pub fn position(&mut self, channel: usize, raw: u64) -> Option<f64> {
         let (scale, turns) = (self.scales.get(channel)?, self.turns.get_mut(channel)?);
-        Some(scale.value(turns.step(scale.steps(raw))))
+        let is_possible = scale.is_possible(raw);
+        is_possible.then(|| scale.value(turns.step(scale.steps(raw))))
     }
 
     /// A row.
@@ -85,6 +86,14 @@ impl Counter {
             derived,
         }
     }
+}
+
+/// A drawing, and what it is drawn from.
+pub struct Drawing {
+    /// The drawing.
+    pub picture: Picture,
+    /// Counts turns on.
+    pub counter: Counter,
 }
 
 /// What is drawn beside positions.

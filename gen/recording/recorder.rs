@@ -6,7 +6,7 @@ use super::files::{Open, Target};
 use super::keep::{Entry, Keep, Kept};
 use super::layout::Layout;
 use super::parquet::{GROUPS, GROUPS_MAX};
-use super::picture::{Counter, Picture};
+use super::picture::{Drawing, Picture};
 use super::sheet::Format;
 use crate::error::GenError;
 use endat_host::feed::Row;
@@ -33,14 +33,6 @@ impl Limits {
             groups: Some(if is_said { GROUPS_MAX } else { GROUPS }),
         }
     }
-}
-
-/// A drawing, and what it is drawn from.
-pub struct Drawing {
-    /// The drawing.
-    pub picture: Picture,
-    /// Counts turns on.
-    pub counter: Counter,
 }
 
 /// What is wanted.
@@ -77,6 +69,8 @@ pub struct Recorder {
     begin: Option<u64>,
     written: u64,
     span_s: f64,
+    /// Positions that their scale leaves no room for, of each channel.
+    impossible: Vec<u64>,
 }
 
 impl Recorder {
@@ -85,6 +79,7 @@ impl Recorder {
         let mut new = Self {
             system_hz: f64::from(wishes.about.identity.system_hz.max(1)),
             number: wishes.target.first()?,
+            impossible: vec![0; wishes.layout.scales.len()],
             wishes,
             open: None,
             parts: 0,
@@ -132,6 +127,15 @@ impl Recorder {
     /// Time of the last row that came.
     pub fn span_s(&self) -> f64 {
         self.span_s
+    }
+
+    /// What is to be told of positions that their scale leaves no room for.
+    pub fn impossible(&self) -> impl Iterator<Item = String> + '_ {
+        let counts = self.impossible.iter().enumerate();
+        counts.filter(|(_, count)| **count > 0).map(|(n, count)| {
+            let scale = &self.wishes.layout.scales[n];
+            format!("channel {n}: {count} positions have bits above the angle of {scale}: the encoder uses more; give --range {n}=SINGLE+MULTI as its data sheet has it")
+        })
     }
 
     /// The drawing.
@@ -206,6 +210,11 @@ impl Recorder {
     /// A row of the card.
     pub fn row(&mut self, row: Row) -> io::Result<()> {
         self.span_s = row.cycles as f64 / self.system_hz;
+        let cells = row.cells.iter().zip(&self.wishes.layout.scales);
+        for ((cell, scale), count) in cells.zip(&mut self.impossible) {
+            let is_impossible = |position: u64| cell.fresh && !scale.is_possible(position);
+            *count += u64::from(cell.position.is_some_and(is_impossible));
+        }
         let values = self.wishes.derivation.values(&row, self.span_s);
         if let Some(Drawing { picture, counter }) = &mut self.wishes.drawing {
             picture.push(&counter.measurement(&row, self.span_s, values.clone()));
@@ -264,7 +273,6 @@ mod tests {
                     stream_additional_data: false,
                 },
                 plates: vec![None, None],
-                ranges: vec![Some(TURN); 2],
                 every: 1,
                 events: Vec::new(),
                 start: SystemTime::UNIX_EPOCH + Duration::from_secs(1_700_000_000),

@@ -25,6 +25,8 @@ pub struct Track {
     in_windows: u64,
     windows: u64,
     worst: f64,
+    /// Values follow each other: they do not begin anew anywhere that nobody knows.
+    is_counted: bool,
     /// Distances from the parabola of each window.
     pub histogram: Histogram,
 }
@@ -111,6 +113,7 @@ impl Track {
             in_windows: 0,
             windows: 0,
             worst: 0.0,
+            is_counted: true,
             histogram: step.map_or_else(Histogram::default, Histogram::of_width),
         }
     }
@@ -125,6 +128,9 @@ impl Track {
         let (low, high) = self.range.unwrap_or((value, value));
         self.range = Some((low.min(value), high.max(value)));
         self.ends = Some((self.ends.map_or(value, |e| e.0), value));
+        if !self.is_counted {
+            return;
+        }
         self.line.push(time_s, value);
         self.window.push((time_s, value));
         if self.window.len() == self.window_rows {
@@ -168,6 +174,8 @@ pub struct ChannelStats {
     pub tally: Tally,
     /// One measuring step in its unit, if the file says so.
     pub step: Option<f64>,
+    /// Why drift and noise are not calculated, and the remedy.
+    pub unknown: Option<String>,
 }
 
 /// All figures.
@@ -195,13 +203,18 @@ pub struct Stats {
 impl Stats {
     /// Of a recording that begins so; noise is that of windows of so many rows.
     pub fn new(head: &Head, window_rows: usize) -> Self {
-        let scales = head.scales();
         let channels = head.units.iter().enumerate().map(|(n, unit)| {
-            let step = scales.as_ref().map(|all| all[n].0.step());
+            let step = head.scale(n).map(|scale| scale.step());
+            let unknown = head.unknown(n);
+            let track = Track::new(format!("channel {n}"), unit.clone(), window_rows, step);
             ChannelStats {
-                track: Track::new(format!("channel {n}"), unit.clone(), window_rows, step),
+                track: Track {
+                    is_counted: unknown.is_none(),
+                    ..track
+                },
                 tally: Tally::default(),
                 step,
+                unknown,
             }
         });
         let derived = head.derived.iter();

@@ -290,7 +290,7 @@ impl VirtualCard {
         let wanted = config.encoders.first().map(String::as_str);
         check_device(&TFormat, 0, wanted)?;
         let is_open = wanted == Some(NO_DEVICE);
-        let plugged = t_format_encoder::plug(receiver.bit_hz(), 0, is_open, config);
+        let plugged = t_format_encoder::plug(receiver.bit_hz(), None, 0, is_open, config);
         bench.add_other(&PinNames::receiver(), plugged.encoder);
         let host = HostEnd::Gateway(Gateway::new(&Dsp, &mut bench, LINK_TIMEOUT_US, None));
         let ports = (vec![PortOf::Other(0)], vec![plugged.faults]);

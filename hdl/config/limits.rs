@@ -88,6 +88,8 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "calibration_hz" => ENDAT_HZ_MIN..=calibration_most_hz(DELAY_BASE_NS),
         "tst_ns" => TST_MIN_NS..=TST_MAX_NS,
         "position_bits" => u64::from(*POSITION_BITS.start())..=u64::from(*POSITION_BITS.end()),
+        "single_turn_bits" => 1..=u64::from(*POSITION_BITS.end()),
+        "multi_turn_bits" => 0..=max_of(MULTI_TURN_BITS),
         "cable_m" => 0..=cable_most_m(slow),
         "tcal_max_ns" => 1..=tcal_most_ns(calibration_most_hz(DELAY_BASE_NS), 0),
         "recovery_min_ns" | "recovery_max_ns" => SHORT_RECOVERY_MIN_NS..=recovery_most_ns(slow, 0),

@@ -11,6 +11,7 @@ mod card;
 mod channel;
 mod limits;
 mod parts;
+mod range;
 mod spoken;
 
 pub(crate) use card::{frame_too_long, microseconds, TooLong};
@@ -22,6 +23,7 @@ pub use parts::{
     LineParts, OutputParts, PhaseSource, SafetyParts, ServiceParts, StreamParts, StreamStart,
     ERROR_TEST_MS,
 };
+pub use range::PositionRange;
 
 use crate::endat::timing::{
     calibration_hz, RECOVERY_MAX_NS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
@@ -50,6 +52,8 @@ pub const RECOVERY_LIMIT_BITS: u32 = CHANNEL_CONFIG
     .width;
 /// Bits of the longest wait for the start bit, in the blocks.
 pub const START_TIMEOUT_BITS: u32 = CHANNEL_CONFIG.field("limits", "start_timeout_us").width;
+/// Bits of the number of bits that count turns, in the register map.
+const MULTI_TURN_BITS: u32 = CHANNEL_CONFIG.field("timing", "multi_turn_bits").width;
 /// Fewest cycles that a first low phase can be longer than half a period, in the blocks.
 pub const FIRST_LOW_EXTRA_MIN: u64 = 4;
 /// Bits of the ready time tR, in the blocks.
@@ -108,6 +112,8 @@ pub struct ChannelSpec {
     pub spoken: Spoken,
     /// Which triggers the channel takes; if all channels say nothing about it, every one takes all, and there is no logic for another choice.
     pub trigger: Option<OwnTrigger>,
+    /// What the position is, for the host; `None` = an EnDat encoder may say it, others cannot.
+    pub range: Option<PositionRange>,
 }
 
 /// What is asked of a card.
@@ -382,6 +388,7 @@ impl ChannelSpec {
             cable_m: 0,
             spoken,
             trigger: None,
+            range: None,
         }
     }
 

@@ -32,6 +32,9 @@ impl ChannelConfig {
         let mut check = Check::new(Section::Channel(index), &mut problems);
         let spoken = request.spoken;
         let resolved = spoken.resolve(&mut check, request, system_hz, double_edge);
+        if let Some(config) = &resolved {
+            range::check_range(&mut check, config);
+        }
         match resolved {
             Some(config) if problems.is_empty() => Ok(config),
             _ => Err(problems),

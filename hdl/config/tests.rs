@@ -18,6 +18,7 @@ fn rcn_8510() -> ChannelSpec {
         cable_m: 100,
         spoken: Spoken::Endat,
         trigger: None,
+        range: None,
     }
 }
 

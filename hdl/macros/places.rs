@@ -220,7 +220,7 @@ mod tests {
     fn a_wrong_name_is_answered_with_the_right_ones() {
         let wrong = |block| resolved(block).unwrap_err();
         let field = wrong(parse_quote!({ field!(w.val(), config.limits.field_gap) }));
-        assert_eq!(field, "`field_gap` is not in the register table; there are start_timeout_us, recovery_limit_cycles, field_gap_us");
+        assert_eq!(field, "`field_gap` is not in the register table; there are start_timeout_us, range, recovery_limit_cycles, field_gap_us");
         let block = wrong(parse_quote!({ offset!(lines.worst) }));
         assert!(
             block.starts_with("`lines` is not in the register table; there are card, "),

@@ -20,6 +20,7 @@ pub fn test_config() -> CardConfig {
         cable_m: 20,
         spoken: Spoken::Endat,
         trigger: None,
+        range: None,
     };
     let second = ChannelSpec {
         clock_hz: 2_000_000,

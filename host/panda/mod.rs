@@ -36,7 +36,7 @@ pub struct Column {
 enum What {
     Time,
     Trigger,
-    Position(usize),
+    Position(usize, Scale),
     Fresh(usize),
     Cause(usize),
     Info(usize, usize),
@@ -77,14 +77,11 @@ impl Column {
             let one = scale.convert(1);
             columns.push(Self {
                 name: format!("INENC{}.VAL", channel + 1),
-                scale: match scale {
-                    // Whole turns stay in the number.
-                    Scale::Rotary { steps_per_turn } => 360.0 / (*steps_per_turn).max(1) as f64,
-                    Scale::Linear { .. } | Scale::Counts { .. } => one.value,
-                },
+                // Whole turns stay in the number.
+                scale: scale.step(),
                 unit: one.unit,
                 meaning: "Last good position",
-                what: What::Position(channel),
+                what: What::Position(channel, *scale),
             });
             columns.push(Self {
                 name: format!("INENC{}.FRESH", channel + 1),
@@ -118,7 +115,14 @@ impl Column {
         match self.what {
             What::Time => row.cycles as i64,
             What::Trigger => row.trigger as i64,
-            What::Position(n) => cell(n).and_then(|c| c.position).unwrap_or(0) as i64,
+            What::Position(n, scale) => {
+                let position = cell(n).and_then(|c| c.position).unwrap_or(0);
+                (if scale.is_known() {
+                    scale.steps(position)
+                } else {
+                    position
+                }) as i64
+            }
             What::Fresh(n) => cell(n).is_some_and(|c| c.fresh).into(),
             What::Cause(n) => cell(n).map_or(0, |c| code(c.cause)),
             What::Info(n, info) => {

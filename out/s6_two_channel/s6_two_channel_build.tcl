@@ -14,7 +14,7 @@ proc write_report {clocks cells} {
         lappend kinds "    \"$kind\": {\"used\": [number $used], \"available\": [number $available]}"
     }
     set file [open s6_two_channel_report.json w]
-    puts $file "{\n  \"configuration\": \"6612dd16497a\",\n  \"part\": \"xc6slx9-tqg144-2\",\n  \"bitstream_bytes\": [file size s6_two_channel.bit],\n  \"fmax\": {\n[join $rows ",\n"]\n  },\n  \"utilization\": {\n[join $kinds ",\n"]\n  }\n}"
+    puts $file "{\n  \"configuration\": \"4372d9d99a42\",\n  \"part\": \"xc6slx9-tqg144-2\",\n  \"bitstream_bytes\": [file size s6_two_channel.bit],\n  \"fmax\": {\n[join $rows ",\n"]\n  },\n  \"utilization\": {\n[join $kinds ",\n"]\n  }\n}"
     close $file
 }
 

@@ -5,7 +5,6 @@ pub mod causes;
 use self::causes as cause;
 use crate::causes::cause::coded;
 use crate::named::{named, Named, Values};
-use crate::protocol::MAX_POSITION_BITS;
 use crate::protocol_row::{channels, own, OwnField, ProtocolRow};
 use crate::result::LINE_FIRST;
 
@@ -22,7 +21,8 @@ pub const PROTOCOL: ProtocolRow = ProtocolRow {
     fields: FIELDS,
     channels: channels("ssi", 24, "SSI: bit n for channel n"),
     part: None,
-    single_bits: Some(MAX_POSITION_BITS),
+    turns_at: None,
+    turns_with: None,
     has_special_bits: true,
 };
 

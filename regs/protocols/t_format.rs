@@ -15,6 +15,9 @@ use Access::{ReadOnly, Strobe};
 /// Resets count only so many times in a row.
 pub const RESETS_IN_A_ROW: u32 = 10;
 
+/// Lowest bit of a position that counts turns: 24 bits of angle are below it, of which an encoder uses the lower ones.
+pub const TURNS_AT: u32 = 24;
+
 /// What card and host agree on of T-format.
 pub const PROTOCOL: ProtocolRow = ProtocolRow {
     name: "T-format",
@@ -28,7 +31,8 @@ pub const PROTOCOL: ProtocolRow = ProtocolRow {
     fields: FIELDS,
     channels: channels("t_format", 0, "T-format: bit n for channel n"),
     part: Some(Part::TFormat),
-    single_bits: Some(24),
+    turns_at: Some(TURNS_AT),
+    turns_with: Some(&[request::EVERYTHING, request::MULTI_TURN]),
     has_special_bits: false,
 };
 
@@ -61,7 +65,8 @@ const FIELDS: &[OwnField] = &[
     own("line", Values::Bits(LINE), &[]),
     own("flags", Values::Bits(EVIDENCE), &[]),
     own("period_cycles", Values::Plain, &[(8, 127)]),
-    own("position_bits", Values::Plain, &[]),
+    own("position_bits", Values::Plain, &[(1, 2 * TURNS_AT)]),
+    own("multi_turn_bits", Values::Plain, &[(0, TURNS_AT)]),
     own("command", Values::Plain, &[]),
     own("request_id", Values::Plain, &[(0, 5), (7, 12), (14, 15)]),
     own("start_timeout_us", Values::Plain, &[(1, 63)]),

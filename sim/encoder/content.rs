@@ -66,6 +66,28 @@ impl TypePlate {
         }
     }
 
+    /// A rotary encoder with so many bits of angle, and so many that count revolutions.
+    pub fn of_turns(single_turn_bits: u32, multi_turn_bits: u32) -> Self {
+        Self {
+            revolutions: if multi_turn_bits > 0 {
+                1 << multi_turn_bits
+            } else {
+                0
+            },
+            ..Self::rotary(single_turn_bits)
+        }
+    }
+
+    /// A linear encoder with this measuring step.
+    pub fn linear(step_nm: u32) -> Self {
+        Self {
+            rotary: false,
+            signal_periods: 20_000,
+            measuring_steps: step_nm,
+            ..Self::rotary(0)
+        }
+    }
+
     /// How many of `position_bits` count revolutions.
     pub fn multiturn_bits(&self) -> u32 {
         u32::from(self.revolutions).checked_ilog2().unwrap_or(0)

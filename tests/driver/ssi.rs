@@ -4,7 +4,7 @@ use super::rig::Rig;
 use super::world::World;
 use super::{home, sources};
 use crate::tools;
-use endat_driver::{Card, Error, Uart};
+use endat_driver::{Card, Error, Range, Uart};
 use endat_gen::config::{parse, preset};
 use endat_regs::Protocol;
 
@@ -21,6 +21,12 @@ fn the_rust_driver_has_positions_and_refuses_what_an_ssi_encoder_has_not() {
         assert_eq!((result.cause, result.width_bits), (0, 0));
         assert_ne!(result.position, 0);
     }
+    let turns = Range::rotary(13, 12, Protocol::Ssi).unwrap();
+    assert_eq!(
+        [0, 1].map(|n| card.read_range(n).unwrap()),
+        [turns, Range::Linear]
+    );
+    assert_eq!(card.read_range(2), Err(Error::Argument));
     assert_eq!(card.read_eeprom(0, 1, 10), Err(Error::Protocol));
     assert_eq!(card.read_state(1).err(), Some(Error::Protocol));
     world.is_content();

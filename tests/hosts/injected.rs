@@ -161,12 +161,11 @@ fn wrong_faults_and_wrong_cards_are_told() {
 fn the_drawing_of_a_rehearsal_shows_gaps_and_causes() {
     let mut card = Card::find(Bridge::new(card_of(&slow_card()))).unwrap();
     let scales = card.scales().unwrap();
-    let ranges = endat_host::motion::ranges(&scales, &[]);
     let units: Vec<String> = scales
         .iter()
         .map(|s| s.convert(0).unit.to_owned())
         .collect();
-    let mut counter = Counter::new(&scales, &ranges);
+    let mut counter = Counter::new(&scales);
     let extras = Extras {
         difference: true,
         velocity: false,

@@ -27,11 +27,12 @@ const BASES: [&str; 7] = [
     "name = \"base\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
      command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\nbase_address = 0x2000\n[outputs]\n\
      parts = [\"position\", \"interrupt\"]\n",
-    "name = \"outside\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
+    "name = \"outside\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\nlinear = false\n\
      command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"spi\"\nsck_hz = 1_000_000\n",
     "name = \"other\"\n[clock]\nsystem_hz = 100_000_000\n[[channel]]\nprotocol = \"t_format\"\nbit_hz = 5_000_000\nrequest = 0\n\
      reply_gap_us = 30\nfield_gap_us = 3\nfilter_ns = 20\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
     "name = \"serial\"\n[clock]\nsystem_hz = 100_000_000\n[[channel]]\nprotocol = \"ssi\"\nposition_bits = 25\nclock_hz = 500_000\n\
+     single_turn_bits = 25\nmulti_turn_bits = 0\n\
      code = \"gray\"\nparity = \"odd\"\ntwice = true\nbit_delay_ns = 300\ntst_ns = 2_000\nfilter_ns = 20\nrecovery_min_ns = 12_000\nrecovery_max_ns = 20_000\ncable_m = 20\n\
      bits_before = [\"ignored\"]\nbits_after = [\"alarm\"]\nend_low = true\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
     "name = \"receiver\"\n[host]\nbus = \"dsp\"\n[[channel]]\nprotocol = \"t_format\"\nencoder = \"one\"\nbit_hz = 2_500_000\n\

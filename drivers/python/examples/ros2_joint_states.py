@@ -88,9 +88,10 @@ class Joint:
         if len(at) == 0:
             return None
         positions = channel.unwrapped()[at]
-        # A multiturn encoder counts itself, of a singleturn one the turns before this block are counted in.
-        if channel.wraps_at is not None and not channel.turns[at].any() and self._position is not None:
-            positions = np.unwrap(np.append(self._position, positions), period=channel.wraps_at)[1:]
+        # What the encoder does not count itself is counted on from the block before.
+        if channel.wraps_at is not None and self._position is not None:
+            period = channel.wraps_at * (channel.turns_counted or 1)
+            positions = np.unwrap(np.append(self._position, positions), period=period)[1:]
         self._position = float(positions[-1])
         if not channel.fresh[-1]:
             return None

@@ -189,8 +189,23 @@ def test_t_format_has_counts() -> None:
         at = card.identity.protocols.index("T-format")
         one = card.samples(5).channels[at]
         assert one.unit == "counts" and one.wraps_at is None
+        with pytest.raises(endat.BadInput, match=r'give connect\(\) ranges=\{1: "SINGLE\+MULTI"\}'):
+            one.unwrapped()
         assert np.array_equal(one.turns, one.raw >> np.uint64(24)) and one.fresh.all()
         assert card.encoders()[at] is None
+
+
+def test_t_format_turns_are_counted_on_with_the_bits_of_a_turn() -> None:
+    """17 of the 24 bits of angle are used: the raw position jumps at each turn, the unwrapped one does not."""
+    with endat.connect("virtual:mixed_protocols", ranges={1: "17+16"}) as card:
+        one = card.samples(50).channels[1]
+        assert (one.unit, one.wraps_at, one.turns_counted, one.unknown) == ("deg", 360, 65536, None)
+    raw = np.array([100 << 24 | 130_285, 101 << 24, 100 << 24 | 130_285], dtype=np.uint64)
+    turns, steps = raw >> np.uint64(24), raw & np.uint64(0x1FFFF)
+    crossing = replace(one, raw=raw, turns=turns, position=steps * 360 / (1 << 17), fresh=np.ones(3, dtype=np.bool_))
+    np.testing.assert_allclose(np.diff(crossing.unwrapped()) * (1 << 17) / 360, [787, -787], atol=1e-6)
+    with pytest.raises(endat.BadInput, match="range = 5: there is no channel"):
+        endat.connect("virtual:mixed_protocols", ranges={5: "17+16"})
 
 
 def test_additional_data_come_with_their_positions(tmp_path: Path, service_file: Path) -> None:
@@ -207,7 +222,9 @@ def test_additional_data_come_with_their_positions(tmp_path: Path, service_file:
         assert set(one.status[one.good] & 0x1F) == {0x0C}
 
 
-def channel(position: list[float], fresh: list[bool], turns: list[int], wraps_at: float | None) -> endat.ChannelSamples:
+def channel(
+    position: list[float], fresh: list[bool], turns: list[int], wraps_at: float | None, turns_counted: int | None = 1
+) -> endat.ChannelSamples:
     count = len(position)
     return endat.ChannelSamples(
         unit="deg",
@@ -218,6 +235,8 @@ def channel(position: list[float], fresh: list[bool], turns: list[int], wraps_at
         fresh=np.array(fresh),
         cause=np.zeros(count, dtype=np.uint8),
         wraps_at=wraps_at,
+        turns_counted=turns_counted,
+        unknown=None,
         additional=(),
     )
 
@@ -225,8 +244,11 @@ def channel(position: list[float], fresh: list[bool], turns: list[int], wraps_at
 def test_unwrapping_counts_turns_and_skips_what_is_held() -> None:
     single = channel([350, 355, 355, 2, 358], [True, True, False, True, True], [0] * 5, 360)
     np.testing.assert_array_equal(single.unwrapped(), [350, 355, np.nan, 362, 358])
-    multi = channel([350, 10, 10], [True] * 3, [4, 5, 9], 360)
+    multi = channel([350, 10, 10], [True] * 3, [4, 5, 9], 360, 4096)
     np.testing.assert_array_equal(multi.unwrapped(), [1790, 1810, 3250])
+    # Over the last of all turns that are told apart, and back.
+    ends = channel([350, 10, 350], [True] * 3, [4095, 0, 4095], 360, 4096)
+    np.testing.assert_array_equal(np.diff(ends.unwrapped()), [20, -20])
     linear = channel([1.5, 900, 3], [True] * 3, [0] * 3, None)
     np.testing.assert_array_equal(linear.unwrapped(), [1.5, 900, 3])
     nothing = replace(single, fresh=np.zeros(5, dtype=np.bool_))
@@ -259,6 +281,7 @@ def test_a_recording_says_what_was_measured(card: endat.Card, tmp_path: Path) ->
         plate = card.encoders()[0]
         assert plate is not None
         assert one["position"].attrs["units"] == "deg" and one.attrs["serial"] == plate.serial
+        assert (one.attrs["steps_per_turn"], one.attrs["turns"], one.attrs["linear"]) == (1 << 29, 1, False)
         assert np.allclose(one["position"], one["raw"][:] * (360 / 2**BITS))
         names = h5py.check_enum_dtype(one["cause"].dtype)
         assert names["none"] == 0 and names["crc"] == next(c for c, n in endat.CAUSES.items() if n == "crc")

@@ -20,9 +20,12 @@ use crate::virtual_card::virtual_card_at;
 use clap::Args;
 use endat_host::mailbox::INITIALISATION;
 pub use endat_host::owner::AnyCard;
+use endat_host::range::Ranges;
 use endat_host::registers::Place;
 use endat_host::transport::Port;
+use endat_host::units::Scale;
 use endat_host::{Bridge, HostError, Transport};
+use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{channel as channel_of_threads, RecvTimeoutError};
 use std::sync::Arc;
@@ -41,6 +44,61 @@ pub struct PortArgs {
     /// Baud rate of a serial port [default: 3000000]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     baud: Option<String>,
+}
+
+/// What positions are, where card and name plates do not say it, or are wrong.
+#[derive(Args, Clone)]
+pub struct RangeArgs {
+    /// What positions of a channel are, as its encoder's data sheet has it: 0=17+16 for 17 bits of angle and 16 that count turns, 1=linear for a scale [default: as the encoder or the card's configuration says]
+    #[arg(long, value_name = "CHANNEL=SINGLE+MULTI")]
+    range: Vec<String>,
+}
+
+impl RangeArgs {
+    /// What is said.
+    pub fn ranges(&self) -> Result<Ranges, GenError> {
+        Ranges::parse(&self.range).map_err(told)
+    }
+}
+
+/// Where a card is whose positions are wanted.
+#[derive(Args, Clone)]
+pub struct RangedPort {
+    #[command(flatten)]
+    port: PortArgs,
+    #[command(flatten)]
+    range: RangeArgs,
+}
+
+impl Deref for RangedPort {
+    type Target = PortArgs;
+
+    fn deref(&self) -> &PortArgs {
+        &self.port
+    }
+}
+
+impl RangedPort {
+    /// What is said about its positions.
+    pub fn ranges(&self) -> Result<Ranges, GenError> {
+        self.range.ranges()
+    }
+
+    /// Opens the link, finds out who answers, and lets it know what is said.
+    pub fn open(&self) -> Result<AnyCard, GenError> {
+        // A word that is wrong is told at once.
+        let ranges = self.ranges()?;
+        let mut card = self.port.open()?;
+        card.set_ranges(ranges).map_err(told)?;
+        Ok(card)
+    }
+}
+
+/// What positions are, of every channel; what is to be told about that is told.
+pub fn scales(card: &mut AnyCard) -> Result<Vec<Scale>, GenError> {
+    let notes = card.scale_notes().map_err(told)?;
+    notes.iter().for_each(|note| say(note));
+    card.scales().map_err(told)
 }
 
 /// What the library says, as a message of this program.

@@ -1,7 +1,7 @@
 //! `read`: the latest positions, once.
 
 use super::super::{colour, to_json, Outcome};
-use super::{settled, told, PortArgs};
+use super::{scales, settled, told, RangedPort};
 use crate::error::GenError;
 use clap::Args;
 use endat_driver::Reading;
@@ -15,7 +15,7 @@ use std::fmt::Write;
 #[derive(Args)]
 pub struct ReadArgs {
     #[command(flatten)]
-    port: PortArgs,
+    port: RangedPort,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -111,7 +111,7 @@ fn painted_verdict(reading: &Reading) -> String {
 pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = card.scales().map_err(told)?;
+    let scales = scales(&mut card)?;
     let results = card.results().map_err(told)?;
     let system_hz = f64::from(card.identity().system_hz);
     let mut messages = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::super::work::say;
 use super::super::Outcome;
-use super::{interrupted, settled, told, PortArgs};
+use super::{interrupted, scales, settled, told, RangedPort};
 use crate::error::GenError;
 use crate::number::number_if;
 use crate::virtual_card::is_virtual;
@@ -16,7 +16,7 @@ use std::sync::atomic::Ordering;
 #[derive(Args)]
 pub struct ServeArgs {
     #[command(flatten)]
-    port: PortArgs,
+    port: RangedPort,
     /// Address to listen at [default: 127.0.0.1]
     #[arg(long, value_name = "ADDRESS")]
     host: Option<String>,
@@ -52,7 +52,7 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
     drop(open()?);
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = card.scales().map_err(told)?;
+    let scales = scales(&mut card)?;
     let additional_data = card.identity().stream_additional_data;
     let columns = Column::all(card.identity().system_hz, &scales, additional_data);
     let ports = open()?;

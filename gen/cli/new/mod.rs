@@ -79,6 +79,10 @@ fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
     // Which of the usual ones; the next one where one does not go with the rest.
     let mut tried: BTreeMap<&str, usize> = BTreeMap::new();
     for question in QUESTIONS.iter().filter(|q| given.contains_key(q.name)) {
+        // What may be left out may be empty.
+        if given[question.name].is_empty() && question.may_be_empty() {
+            continue;
+        }
         let literal = text::literal(question.of, &question.option(), &given[question.name]);
         literal.map_err(|error| error.messages().to_vec())?;
     }

@@ -88,6 +88,12 @@ fn is_endat(answers: &Answers) -> bool {
     form_of(answers) == keys::ENDAT_FORM
 }
 
+/// Unused bits may be between the angle and what counts turns, so that one does not follow from the other.
+fn has_turns_apart(answers: &Answers) -> bool {
+    let is_it = |p: &Protocol| p.row().turns_at.is_some() && form_of(answers) == keys::form(*p);
+    Protocol::ALL.iter().any(is_it)
+}
+
 fn is_card(answers: &Answers) -> bool {
     !is_receiver(answers)
 }
@@ -204,6 +210,22 @@ pub static QUESTIONS: &[Question] = &[
         usual: |_| vec![example(&keys::POSITION_BITS)],
     },
     Question {
+        name: "single-turn-bits",
+        of: Of::Key(&keys::SINGLE_TURN_BITS, keys::CHANNELS),
+        is_asked: is_card,
+        usual: |_| vec![String::new()],
+    },
+    Question {
+        name: "multi-turn-bits",
+        of: Of::Key(&keys::MULTI_TURN_BITS, keys::CHANNELS),
+        is_asked: |answers| {
+            let single = answers.get("single-turn-bits");
+            let has_single = single.is_some_and(|told| !told.is_empty());
+            is_card(answers) && (has_single || !has_turns_apart(answers))
+        },
+        usual: |_| vec![String::new()],
+    },
+    Question {
         name: "command",
         of: Of::Key(&keys::COMMAND, keys::CHANNELS),
         is_asked: |answers| is_of_form(&keys::COMMAND, answers),
@@ -289,6 +311,11 @@ pub static QUESTIONS: &[Question] = &[
 ];
 
 impl Question {
+    /// Whether no answer is one: the key is left out.
+    pub fn may_be_empty(&self) -> bool {
+        (self.usual)(&Answers::new()).contains(&String::new())
+    }
+
     /// What it is, as the table of keys says it.
     pub fn meaning(&self) -> &'static str {
         match self.of {

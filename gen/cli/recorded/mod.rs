@@ -3,6 +3,7 @@
 pub mod plot;
 pub mod stats;
 
+use super::host::RangeArgs;
 use crate::error::GenError;
 use crate::recording::read::{self, Found, Rows};
 use clap::Args;
@@ -14,6 +15,8 @@ pub struct FileArgs {
     /// Recording: CSV, JSON lines or Parquet; several files of one recording in their order
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    range: RangeArgs,
 }
 
 impl FileArgs {
@@ -28,6 +31,6 @@ impl FileArgs {
 
     /// Reads all rows; `is_sparse`: some were left out on purpose.
     fn read(&self, is_sparse: bool, take: Rows<'_>) -> Result<Found, GenError> {
-        read::read_all(&self.files, is_sparse, take)
+        read::read_as(&self.files, is_sparse, self.range.ranges()?, take)
     }
 }

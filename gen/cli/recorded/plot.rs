@@ -80,6 +80,19 @@ pub fn run(arguments: &PlotArgs) -> Result<Outcome, GenError> {
             picture.push(row);
         }
     })?;
+    let needed = match (arguments.velocity, arguments.difference) {
+        (true, _) => found.head.units.len(),
+        (_, true) => 2.min(found.head.units.len()),
+        _ => 0,
+    };
+    if let Some(why) = (0..needed).find_map(|n| found.head.unknown(n)) {
+        let flag = if arguments.velocity {
+            "velocity"
+        } else {
+            "difference"
+        };
+        return Err(GenError::input(format!("--{flag}: {why}, or leave it out")));
+    }
     let Some(picture) = picture.filter(|_| rows > 0) else {
         return Err(GenError::input(format!(
             "--from = {from}, --to = {to}: there are no rows between; give other times"

@@ -48,6 +48,8 @@ pub fn run(arguments: &StatsArgs) -> Result<Outcome, GenError> {
     };
     let mut messages = found.notes;
     messages.extend(found.misfits.told());
+    let unknown = stats.channels.iter().filter_map(|c| c.unknown.as_ref());
+    messages.extend(unknown.map(|why| format!("drift, noise: {why}")));
     Ok(Outcome {
         stdout,
         messages,
@@ -80,6 +82,7 @@ fn as_json(stats: &Stats, found: &Found, window: usize) -> Value {
         object["causes"] = json!(channel.tally.bad);
         object["beside"] = json!(channel.tally.beside);
         object["step"] = json!(channel.step);
+        object["unknown"] = json!(channel.unknown);
         object
     });
     let derived = stats.derived.iter().map(|track| {
@@ -117,7 +120,7 @@ fn figure(x: f64) -> String {
     }
 }
 
-fn track_text(text: &mut String, track: &Track, step: Option<f64>) {
+fn track_text(text: &mut String, track: &Track, step: Option<f64>, is_counted: bool) {
     let unit = &track.unit;
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<18}{value}");
@@ -134,6 +137,10 @@ fn track_text(text: &mut String, track: &Track, step: Option<f64>) {
         "first, last",
         format!("{}, {} {unit}", figure(first), figure(last)),
     );
+    if !is_counted {
+        line("drift, noise", "not known: see --range".into());
+        return;
+    }
     if let Some(drift) = track.drift_per_s() {
         line("drift", format!("{} {unit}/s", figure(drift)));
     }
@@ -220,11 +227,12 @@ fn as_text(stats: &Stats, found: &Found, window: usize) -> String {
         for (cause, count) in &channel.tally.beside {
             let _ = writeln!(text, "    {cause:<16}{count}");
         }
-        track_text(&mut text, &channel.track, channel.step);
+        let is_counted = channel.unknown.is_none();
+        track_text(&mut text, &channel.track, channel.step, is_counted);
     }
     for track in &stats.derived {
         let _ = writeln!(text, "\n{}", track.name);
-        track_text(&mut text, track, None);
+        track_text(&mut text, track, None, true);
     }
     text
 }

@@ -3,7 +3,7 @@
 use crate::other_protocol::{OtherFaults, Plugged, Spoilt};
 use crate::virtual_card::deed::Deed;
 use crate::virtual_card::settings::{VirtualConfig, CABLE_M, NS_PER_M, SECOND};
-use endat_hdl::config::ChannelConfig;
+use endat_hdl::config::{ChannelConfig, PositionRange};
 use endat_hdl::protocols::ssi::asked::Parity;
 use endat_hdl::protocols::ssi::cause;
 use endat_hdl::protocols::ssi::specials::{Special, Specials};
@@ -17,8 +17,10 @@ use std::sync::Arc;
 
 /// An encoder of whatever width and code a channel is configured for.
 pub(crate) const DEVICES: &[&str] = &["SSI"];
-/// Steps of a turn, as usual encoders of 12 or 13 bits to the turn have them.
-const TURN_BITS: u32 = 13;
+/// Steps of a turn, as usual encoders of 12 or 13 bits to the turn have them, unless the configuration has others.
+const TURN_BITS: u64 = 13;
+/// Of a scale: a tenth of it to and fro.
+const STROKE: f64 = 0.1;
 
 /// What it and its line can do of the faults that there are.
 const FAULTS: [&str; 9] = [
@@ -80,11 +82,23 @@ fn fitting(channel: &ChannelConfig, asked: &SsiSpec, seed: u64) -> EncoderConfig
     }
 }
 
-/// One that turns evenly.
-fn motion(channel: usize, position_bits: u32, speed: f64) -> SsiMotion {
+/// One that turns evenly; a scale goes to and fro.
+fn motion(config: &ChannelConfig, channel: usize, speed: f64) -> SsiMotion {
     let speed = speed * (1.0 + 0.5 * channel as f64);
     let start = 0.1 * (channel + 1) as f64;
-    let steps = f64::from(1 << TURN_BITS.min(position_bits));
+    let position_bits = config.position_bits;
+    let all = (1u64 << position_bits) as f64;
+    let turn_bits = match (config.turn_bits(), config.spec.range) {
+        (Some([single, _]), _) => single,
+        (_, Some(PositionRange::Linear)) => {
+            return Arc::new(move |time: Time| {
+                let place = 0.5 + STROKE * (speed * time as f64 / SECOND).sin();
+                (place * all) as u64
+            })
+        }
+        _ => TURN_BITS.min(position_bits.into()),
+    };
+    let steps = (1u64 << turn_bits) as f64;
     Arc::new(move |time: Time| {
         let turns = start + speed * time as f64 / SECOND;
         (turns * steps).max(0.0) as u64 & ((1 << position_bits) - 1)
@@ -113,7 +127,7 @@ pub(crate) fn plug(
         asked: *asked,
     };
     let mut link = SsiLink::new(encoder, delay(channel, config.cable_m));
-    let turns = motion(n, channel.position_bits, config.speed);
+    let turns = motion(channel, n, config.speed);
     link.set_motion(turns.clone());
     if is_open {
         link.unplug();
@@ -141,7 +155,7 @@ pub(crate) fn sound(channel: &ChannelConfig, asked: &SsiSpec, n: usize) -> SsiLi
         fitting(channel, asked, n as u64 + 1),
         delay(channel, CABLE_M),
     );
-    link.set_motion(motion(n, channel.position_bits, 1.0));
+    link.set_motion(motion(channel, n, 1.0));
     link
 }
 

@@ -10,9 +10,10 @@ use endat_sim::t_format::{Defect, EncoderConfig};
 use endat_sim::{Time, MS, NS};
 use std::sync::Arc;
 
-/// The device that it is: single-turn position of 17 bits, multi-turn of 16.
+/// The device that it is.
 pub(crate) const DEVICES: &[&str] = &["TS5700N8401"];
-const SINGLE_BITS: u32 = 17;
+/// Its bits of angle and of turns, unless the configuration has others.
+const BITS: [u64; 2] = [17, 16];
 
 /// What it and its line can do of the faults that there are.
 const FAULTS: [&str; 9] = [
@@ -31,19 +32,26 @@ const FAULTS: [&str; 9] = [
 const ALARMS: [(u16, u8); 2] = [(0x04, 1 << 4), (0xE0, 1 << 5)];
 
 /// Single-turn and multi-turn position of one that turns evenly.
-fn motion(channel: usize, speed: f64) -> TFormatMotion {
+fn motion(channel: usize, speed: f64, [single_bits, multi_bits]: [u64; 2]) -> TFormatMotion {
     let speed = speed * (1.0 + 0.5 * channel as f64);
     let start = 100.1 * (channel + 1) as f64;
     Arc::new(move |time: Time| {
         let turns = start + speed * time as f64 / SECOND;
-        let steps = (turns * f64::from(1 << SINGLE_BITS)).max(0.0) as u64;
-        let single = steps & ((1 << SINGLE_BITS) - 1);
-        (single as u32, (steps >> SINGLE_BITS) as u16 as u32)
+        let steps = (turns * f64::from(1u32 << single_bits)).max(0.0) as u64;
+        let low = |bits: u64| (1u64 << bits) - 1;
+        let turn = steps >> single_bits & low(multi_bits);
+        ((steps & low(single_bits)) as u32, turn as u32)
     })
 }
 
 /// One on its line, turning as others do.
-pub(crate) fn plug(bit_hz: u64, channel: usize, is_open: bool, config: &VirtualConfig) -> Plugged {
+pub(crate) fn plug(
+    bit_hz: u64,
+    bits: Option<[u64; 2]>,
+    channel: usize,
+    is_open: bool,
+    config: &VirtualConfig,
+) -> Plugged {
     let encoder = EncoderConfig {
         bit_hz,
         // A battery that is full: otherwise every result would have that alarm.
@@ -59,7 +67,7 @@ pub(crate) fn plug(bit_hz: u64, channel: usize, is_open: bool, config: &VirtualC
         spoilt: Spoilt::default(),
     };
     let mut link = TFormatLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
-    let turns = motion(channel, config.speed);
+    let turns = motion(channel, config.speed, bits.unwrap_or(BITS));
     link.set_motion(turns.clone());
     if is_open {
         link.unplug();

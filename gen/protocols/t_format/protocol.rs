@@ -57,7 +57,13 @@ impl Other for TFormat {
         is_open: bool,
         config: &VirtualConfig,
     ) -> Plugged {
-        encoder::plug(asked(channel).bit_hz, n, is_open, config)
+        encoder::plug(
+            asked(channel).bit_hz,
+            channel.turn_bits(),
+            n,
+            is_open,
+            config,
+        )
     }
 
     fn sound(&self, channel: &ChannelConfig, n: usize) -> Box<dyn OtherEncoder> {

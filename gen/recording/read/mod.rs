@@ -3,15 +3,16 @@
 mod order;
 mod parquet;
 mod text;
+mod turns;
 
 pub use order::Misfits;
 
-use super::about::scale_of;
 use super::count::Judge;
 use super::files::is_next;
-use super::layout::DerivedColumn;
-use super::picture::{Counter, Measurement, Seen};
+use super::layout::{of_channel, DerivedColumn};
+use super::picture::{Measurement, Seen};
 use crate::error::GenError;
+use endat_host::range::{self, Ranges};
 use endat_host::units::Scale;
 use order::{Mark, Order};
 use serde_json::Value;
@@ -30,14 +31,30 @@ pub struct Head {
     pub derived: Vec<DerivedColumn>,
     /// What it is of; null if it does not say.
     pub about: Value,
+    /// What positions are, of every channel, as far as that is known.
+    pub scales: Vec<Option<Scale>>,
 }
 
 impl Head {
-    /// What a measuring step is, and after how many it begins anew, of every channel; none if the file does not say.
-    pub fn scales(&self) -> Option<Vec<(Scale, Option<u64>)>> {
-        let channels = self.about["channels"].as_array()?;
-        let all: Option<Vec<_>> = channels.iter().map(scale_of).collect();
-        all.filter(|all| all.len() == self.units.len())
+    /// What positions of a channel are, as the file says.
+    fn own_scale(&self, channel: usize) -> Option<Scale> {
+        super::about::scale_of(&self.about["channels"][channel])
+    }
+
+    /// What positions of a channel are; none if that is not known.
+    pub fn scale(&self, channel: usize) -> Option<Scale> {
+        self.scales.get(channel).copied().flatten()
+    }
+
+    /// Why positions of a channel are not counted on, and the remedy; none if they are.
+    pub fn unknown(&self, channel: usize) -> Option<String> {
+        let is_known = match self.scale(channel) {
+            Some(scale) => scale.is_known(),
+            // Who gave them another unit knew.
+            None => self.units.get(channel).is_some_and(|unit| unit != "counts"),
+        };
+        let remedy = || format!("{}; {}", range::unknown(channel), range::remedy(channel));
+        (!is_known).then(remedy)
     }
 
     /// Which cells are bad.
@@ -166,30 +183,6 @@ fn cause(name: &str) -> Cow<'static, str> {
     known.map_or_else(|| name.to_owned().into(), |(_, known)| known.into())
 }
 
-/// Counts turns on where a file does not say how many measuring steps a turn has.
-#[derive(Clone, Debug, Default)]
-struct TextTurns {
-    is_multiturn: bool,
-    /// Last value within the turn, and turns until then.
-    last: Option<(f64, f64)>,
-}
-
-impl TextTurns {
-    fn step(&mut self, value: f64, told: u64, unit: &str) -> f64 {
-        if unit != "deg" {
-            return value;
-        }
-        self.is_multiturn |= told > 0;
-        let (last, turns) = self.last.unwrap_or((value, 0.0));
-        let turns = match self.is_multiturn {
-            true => told as f64,
-            false => turns - ((value - last) / 360.0).round(),
-        };
-        self.last = Some((value, turns));
-        value + turns * 360.0
-    }
-}
-
 /// Files of a recording, one after the other.
 #[derive(Default)]
 pub struct Reader {
@@ -199,10 +192,13 @@ pub struct Reader {
     order: Order,
     /// The row that is taken.
     now: Measurement,
-    counter: Option<Counter>,
-    /// What a measuring step is; empty if the file does not say.
-    scales: Vec<Scale>,
-    turns: Vec<TextTurns>,
+    /// What is said about positions, whatever the files say.
+    said: Ranges,
+    channels: Vec<turns::Channel>,
+    /// What positions are as the first file says, whose columns are made so.
+    own_scales: Vec<Option<Scale>>,
+    /// Units of the first file.
+    units: Vec<String>,
     /// Times of the last two rows of a trigger.
     last_s: Option<f64>,
     before_s: Option<f64>,
@@ -301,18 +297,21 @@ impl Reader {
         self.begins_file = true;
         self.is_sparse |= head.is_sparse();
         let Some(first) = &self.head else {
-            let scales = head.scales();
-            self.counter = scales.map(|all| {
-                let (scales, ranges): (Vec<_>, Vec<_>) = all.into_iter().unzip();
-                self.scales.clone_from(&scales);
-                Counter::new(&scales, &ranges)
-            });
-            self.turns = vec![TextTurns::default(); head.units.len()];
+            self.channels = turns::channels(head, &self.said)?;
+            self.units.clone_from(&head.units);
+            self.own_scales = (0..head.units.len()).map(|n| head.own_scale(n)).collect();
             self.start = head.start();
-            self.head = Some(head.clone());
+            let mut head = head.clone();
+            head.scales = self.channels.iter().map(turns::Channel::scale).collect();
+            for (unit, scale) in head.units.iter_mut().zip(&head.scales) {
+                if let Some(scale) = scale {
+                    *unit = scale.convert(0).unit.to_owned();
+                }
+            }
+            self.head = Some(head);
             return Ok(());
         };
-        if (&first.units, &first.derived) != (&head.units, &head.derived) {
+        if (&self.units, &first.derived) != (&head.units, &head.derived) {
             let text = "has other columns than the file before it; give files of one recording";
             return Err(Wrong::at(0, text));
         }
@@ -379,21 +378,18 @@ impl Reader {
             let place = || format!("{}:{}", path.display(), row.line);
             fits = self.order.step(mark, self.is_sparse, &place);
         }
-        let units = self.head.as_ref().map_or(&[][..], |h| &h.units);
         for (n, cell) in row.cells.iter().enumerate() {
-            check_value(row.line, n, cell, self.scales.get(n))?;
+            let own = self.own_scales.get(n).copied().flatten();
+            check_value(row.line, n, cell, own.as_ref())?;
         }
         self.now.cells.clear();
         for (n, cell) in row.cells.drain(..).enumerate() {
-            let position = match (&mut self.counter, cell.raw, cell.value) {
-                _ if !cell.fresh => None,
-                (Some(counter), Some(raw), _) => counter.position(n, raw),
-                (_, _, Some(value)) => {
-                    let turns = cell.turns.unwrap_or(0);
-                    Some(self.turns[n].step(value, turns, &units[n]))
-                }
-                _ => None,
+            let position = match (self.channels.get_mut(n), self.units.get(n)) {
+                (Some(channel), Some(unit)) if cell.fresh => channel.position(&cell, unit),
+                _ => Ok(None),
             };
+            let position = position
+                .map_err(|why| Wrong::at(row.line, format!("{} {why}", of_channel(n, "raw"))))?;
             self.now.cells.push(Seen {
                 raw: cell.raw,
                 position,
@@ -438,8 +434,19 @@ pub struct Found {
 
 /// Reads all files; nothing is no recording. `is_sparse`: rows were left out on purpose, whatever the files say.
 pub fn read_all(files: &[PathBuf], is_sparse: bool, take: Rows<'_>) -> Result<Found, GenError> {
+    read_as(files, is_sparse, Ranges::default(), take)
+}
+
+/// The same with what is said about positions, whatever the files say.
+pub fn read_as(
+    files: &[PathBuf],
+    is_sparse: bool,
+    said: Ranges,
+    take: Rows<'_>,
+) -> Result<Found, GenError> {
     let mut reader = Reader {
         is_sparse,
+        said,
         ..Reader::default()
     };
     let mut rows = 0u64;

@@ -1,7 +1,9 @@
 //! Requests for T-format channels into cycles, and the length of an exchange.
 
 use super::asked::{is_rate, is_triggered, TFormatSpec};
-use super::protocol::{BIT_HZ, CARD_BIT_CYCLES_MIN, FAST_BIT_HZ, RATE_TOLERANCE_PPM, REST_US};
+use super::protocol::{
+    Content, BIT_HZ, CARD_BIT_CYCLES_MIN, FAST_BIT_HZ, RATE_TOLERANCE_PPM, REST_US,
+};
 use crate::config::{
     check_filter, limits, microseconds, ChannelConfig, ChannelSpec, Check, TooLong,
 };
@@ -51,6 +53,7 @@ impl TFormatSpec {
                 "goes to the EEPROM, which a trigger must not; use 3, and the word t_format<n>.send for the EEPROM".into(),
             );
         }
+        self.check_range(check, request);
         let bit_cycles = check_rate(check, self.bit_hz, system_hz)?;
         // Less than half a bit.
         let filter_cycles =
@@ -70,6 +73,22 @@ impl TFormatSpec {
             spoken: Spoken::TFormat(*self),
             spec: request.clone(),
         })
+    }
+
+    /// Refuses bits of what a trigger does not bring.
+    fn check_range(&self, check: &mut Check<'_>, request: &ChannelSpec) {
+        let Some([single, multi]) = request.range.and_then(|range| range.bits(0)) else {
+            return;
+        };
+        let id = self.request.id();
+        let brings = |content| self.request.reply().contains(&content);
+        if !brings(Content::SingleTurn) {
+            let text = format!("request = {id} brings no angle; remove it, or use request = 3");
+            check.fail("single_turn_bits", single, text);
+        } else if multi > 0 && !brings(Content::MultiTurn) {
+            let text = format!("request = {id} brings no turns; remove it, or use request = 3");
+            check.fail("multi_turn_bits", multi, text);
+        }
     }
 
     /// Why a trigger would come before the channel is ready, and the remedy.

@@ -56,6 +56,7 @@ pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> Ca
         cable_m: 20,
         spoken: Spoken::Endat,
         trigger: None,
+        range: None,
     };
     let second = ChannelSpec {
         position_bits: 37,

@@ -16,15 +16,15 @@ fn complaints(text: &str) -> String {
 fn mistakes_are_told_with_line_and_remedy() {
     let text = preset("mixed_protocols").unwrap();
     let rows = [
-        ("\"t_format\"", "\"tamagawa\"", ":22: channel[1].protocol = \"tamagawa\": unknown protocol; use \"endat\" (default) or \"t_format\""),
-        ("request = 3 ", "position_bits = 29\nrequest = 3 ", ":25: channel[1].position_bits = 29: is a key of EnDat, and this channel speaks T-format; remove it"),
+        ("\"t_format\"", "\"tamagawa\"", ":23: channel[1].protocol = \"tamagawa\": unknown protocol; use \"endat\" (default) or \"t_format\""),
+        ("request = 3 ", "position_bits = 29\nrequest = 3 ", ":26: channel[1].position_bits = 29: is a key of EnDat, and this channel speaks T-format; remove it"),
         ("request = 3 ", "command = \"111000\"\nrequest = 3 ", "channel[1].command = \"111000\": is a key of EnDat"),
         ("request = 3 ", "clock_hz = 3_125_000\nrequest = 3 ", "channel[1].clock_hz = 3_125_000: is a key of EnDat"),
         ("position_bits = 29", "bit_hz = 2_500_000\nposition_bits = 29", "channel[0].bit_hz = 2_500_000: is a key of T-format, and this channel speaks EnDat; remove it, or add protocol = \"t_format\""),
         ("bit_hz = 2_500_000", "bit_hz = 4_000_000", "channel[1].bit_hz = 4000000: is no rate of T-format encoders; use 2500000 or 5000000"),
         ("request = 3 ", "request = 4 ", "channel[1].request = 4: is no request ID; use one of 0, 1, 2, 3, 7, 8, 12"),
         ("request = 3 ", "request = 13 ", "channel[1].request = 13: goes to the EEPROM, which a trigger must not; use 3, and the word t_format<n>.send"),
-        ("reply_gap_us = 20", "reply_gap_us = 64", ":26: channel[1].reply_gap_us = 64: outside 1..63; choose a value in that range"),
+        ("reply_gap_us = 20", "reply_gap_us = 64", ":27: channel[1].reply_gap_us = 64: outside 1..63; choose a value in that range"),
         ("field_gap_us = 2", "field_gap_us = 8", "channel[1].field_gap_us = 8: outside 0..7; choose a value in that range"),
         ("filter_ns = 50", "filter_ns = 160", "channel[1].filter_ns = 160: is 16 cycles, more than 15 (half a bit, and 15 at most); use 150 ns or less"),
         ("system_hz = 100_000_000", "system_hz = 16_000_000", "channel[1].bit_hz = 2500000: has 6 cycles of clock.system_hz = 16000000 in a bit, 8 are needed; use a system clock of at least 20000000 Hz"),

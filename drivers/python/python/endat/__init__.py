@@ -9,6 +9,8 @@
         print(samples.time_s, samples.channels[0].unwrapped())
 """
 
+from collections.abc import Mapping
+
 from .card import Answer, Card, Identity, NamePlate, Reading
 from .endat_native import explain_cause
 from .errors import BadInput, EndatError, Refused, Silent
@@ -35,13 +37,17 @@ __all__ = [
 ]
 
 
-def connect(port: str, *, baud: int = 3_000_000, wait: bool = True) -> Card:
+def connect(
+    port: str, *, baud: int = 3_000_000, wait: bool = True, ranges: Mapping[int, str] | None = None
+) -> Card:
     """Opens a card.
 
     ``port``: a serial port (``/dev/ttyUSB1``, ``COM5``), ``tcp:HOST:PORT``, or ``virtual``, ``virtual:PRESET``, ``virtual:FILE.toml``
     for one that is simulated in this process. ``wait``: until its encoders are initialised and the first results are there.
+    ``ranges``: what positions of a channel are, where neither encoder nor configuration says it, or both are wrong: ``{0: "17+16"}`` for 17
+    bits of angle and 16 that count turns, ``{1: "linear"}`` for a scale.
     """
-    return Card(port, baud, wait)
+    return Card(port, baud, wait, ranges)
 
 
 def explain(cause: str | int) -> str:

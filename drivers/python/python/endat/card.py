@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator
+import warnings
+from collections.abc import Generator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from types import TracebackType
@@ -112,9 +113,10 @@ class Card:
     Calls may come from any thread; a card does one after the other. ``with`` closes it at the end.
     """
 
-    def __init__(self, port: str, baud: int, wait: bool) -> None:
+    def __init__(self, port: str, baud: int, wait: bool, ranges: Mapping[int, str] | None) -> None:
         self.port = port
-        self._native = endat_native.connect(port, _in_range("baud", baud, 12_000_000, 300))
+        said = [f"{channel}={text}" for channel, text in (ranges or {}).items()]
+        self._native = endat_native.connect(port, _in_range("baud", baud, 12_000_000, 300), said)
         try:
             told = self._native.identity()
             self.identity = Identity(
@@ -122,6 +124,8 @@ class Card:
             )
             if wait:
                 self._native.settle()
+            for note in self._native.scale_notes():
+                warnings.warn(note, stacklevel=3)
         except BaseException:
             self._native.close()
             raise
@@ -161,7 +165,7 @@ class Card:
         native, hz = self._native, self.identity.system_hz
         native.begin(poll)
         try:
-            units = native.units()
+            scales = native.scales()
             got: list[Samples] = []
             last = time.monotonic()
             while True:
@@ -169,7 +173,7 @@ class Card:
                 if there and (there >= block or time.monotonic() - last > LATENCY_S):
                     yield Samples.concatenate(got)
                     got, last, there = [], time.monotonic(), 0
-                got.append(_samples(native.take(block - there), hz, units))
+                got.append(_samples(native.take(block - there), hz, scales))
         finally:
             native.end()
 

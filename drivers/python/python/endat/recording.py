@@ -50,9 +50,14 @@ class _File:
         self.new(self.file, "trigger", first.trigger.dtype, "", "number of the trigger, not wrapping")
         self.new(self.file, "missing", first.missing.dtype, "", "triggers without a row just before this one")
         plates = self.card.encoders()
+        scales = self.card._native.scales()
         for n, one in enumerate(first.channels):
             group = self.file.create_group(f"channel{n}")
             group.attrs["protocol"] = identity.protocols[n]
+            for key in ("steps_per_turn", "turns", "linear"):
+                # Neither is of positions that nobody explains.
+                if scales[n]["unknown"] is None and scales[n][key] is not None:
+                    group.attrs[key] = scales[n][key]
             plate = plates[n]
             for name in ("id", "serial", "rotary", "position_bits", "revolutions", "steps"):
                 if plate is not None and getattr(plate, name) is not None:

@@ -13,7 +13,7 @@ from .endat_native import cause_names
 from .errors import BadInput
 
 if TYPE_CHECKING:
-    from .endat_native import _Columns
+    from .endat_native import _Columns, _Scale
 
 #: Name of each code in a column of causes; `endat.explain` says what it means.
 CAUSES: Mapping[int, str] = dict(cause_names())
@@ -50,8 +50,12 @@ class ChannelSamples:
     fresh: NDArray[np.bool_]
     #: Codes of :data:`CAUSES`; 0 = none.
     cause: NDArray[np.uint8]
-    #: Where the position is 0 again, in the unit; none of a linear encoder.
+    #: Where the position is 0 again, in the unit; none of a linear encoder, and where nobody says.
     wraps_at: float | None
+    #: Turns that the encoder tells apart, 1 = it counts none; behind the last one it begins anew. None of a linear encoder, and where nobody says.
+    turns_counted: int | None
+    #: Why positions cannot be counted on or compared, and the remedy; None if they can.
+    unknown: str | None
     #: Additional data 1 and 2, empty on a card that does not record them.
     additional: tuple[AdditionalData, ...]
 
@@ -68,14 +72,16 @@ class ChannelSamples:
     def unwrapped(self) -> NDArray[np.float64]:
         """The position without jumps: whole turns counted in; NaN where this trigger brought none.
 
-        A singleturn encoder must move less than half a turn from one fresh position to the next.
+        From one fresh position to the next an encoder must move less than half of what it tells apart: of a turn, or of all turns that
+        it counts. Raises :class:`endat.BadInput` where nobody says how many that are.
         """
+        if self.unknown is not None:
+            raise BadInput(f"unwrapped(): {self.unknown}")
         out = np.full(len(self.position), np.nan)
         seen = self.position[self.fresh]
         if self.wraps_at is not None:
             turns = self.turns[self.fresh].astype(np.float64)
-            # A multiturn encoder counts itself, a singleturn one always says 0.
-            seen = seen + turns * self.wraps_at if turns.any() else np.unwrap(seen, period=self.wraps_at)
+            seen = np.unwrap(seen + turns * self.wraps_at, period=self.wraps_at * (self.turns_counted or 1))
         out[self.fresh] = seen
         return out
 
@@ -161,16 +167,25 @@ _KINDS: dict[str, Any] = {
 }
 
 
-def _samples(columns: _Columns, system_hz: int, units: list[tuple[str, int, float | None]]) -> Samples:
+def _samples(columns: _Columns, system_hz: int, scales: list[_Scale]) -> Samples:
     channels = []
-    for of, (unit, _, wraps_at) in zip(columns["channels"], units, strict=True):
+    for of, scale in zip(columns["channels"], scales, strict=True):
         arrays = {name: np.frombuffer(data, dtype=_KINDS[name.rsplit("_", 1)[-1]]) for name, data in of.items()}
         additional = tuple(
             AdditionalData(**{f.name: arrays.pop(f"additional_{n}_{f.name}") for f in fields(AdditionalData)})
             for n in (1, 2)
             if f"additional_{n}_good" in arrays
         )
-        channels.append(ChannelSamples(unit=unit, wraps_at=wraps_at, additional=additional, **arrays))
+        channels.append(
+            ChannelSamples(
+                unit=scale["unit"],
+                wraps_at=scale["wraps_at"],
+                turns_counted=scale["turns"],
+                unknown=scale["unknown"],
+                additional=additional,
+                **arrays,
+            )
+        )
     return Samples(
         time_s=np.frombuffer(columns["cycles"], dtype=np.uint64) / system_hz,
         trigger=np.frombuffer(columns["trigger"], dtype=np.uint64),

@@ -10,6 +10,7 @@ use super::{interrupted, needs_trigger, patiently, place, settled, told, AnyCard
 use crate::error::GenError;
 use crate::number::{decimal_if, number_if};
 use crate::recording::count::{Count, Judge};
+use crate::recording::picture::Picture;
 use crate::recording::recorder::Recorder;
 use crate::recording::resume;
 use crate::recording::sheet::Format;
@@ -132,7 +133,11 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
             silent.as_secs_f64()
         ));
     }
-    let mut exit_code = u8::from(is_bad || is_stream && count.missing > 0 || stopped.is_some());
+    let known = messages.len();
+    messages.extend(recorder.impossible());
+    let is_impossible = messages.len() > known;
+    let mut exit_code =
+        u8::from(is_impossible || is_bad || is_stream && count.missing > 0 || stopped.is_some());
     let mut fail = |error: GenError, messages: &mut Vec<String>| {
         exit_code = exit_code.max(error.exit_code());
         messages.extend_from_slice(error.messages());
@@ -157,14 +162,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         }
     }
     if let (Some(mut file), Some(picture)) = (drawing, recorder.picture()) {
-        let subtitle = format!(
-            "{} sample sets, {} triggers missing, {}",
-            count.rows,
-            count.missing,
-            count.told()
-        );
-        let title = format!("Positions of {}", arguments.port.name());
-        file.text = picture.svg(&title, &subtitle);
+        file.text = drawn(picture, &count, arguments.port.name());
         match write_all(&[file]) {
             Ok(written) => messages.extend(written),
             Err(error) => fail(error, &mut messages),
@@ -175,6 +173,13 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         exit_code,
         ..Outcome::default()
     })
+}
+
+/// The drawing with its title.
+fn drawn(picture: &Picture, count: &Count, port: &str) -> String {
+    let (rows, missing, told) = (count.rows, count.missing, count.told());
+    let subtitle = format!("{rows} sample sets, {missing} triggers missing, {told}");
+    picture.svg(&format!("Positions of {port}"), &subtitle)
 }
 
 /// What was recorded, and where it is.

@@ -1,6 +1,6 @@
 //! Arguments of `log`, and what they mean.
 
-use super::super::{told, AnyCard, PortArgs};
+use super::super::{scales, told, AnyCard, RangedPort};
 use crate::error::GenError;
 use crate::number::number_if;
 use crate::recording::about::About;
@@ -9,11 +9,10 @@ use crate::recording::derive::Derivation;
 use crate::recording::files::Target;
 use crate::recording::keep::{Faults, Keep};
 use crate::recording::layout::Layout;
-use crate::recording::picture::{Counter, Extras, Picture};
-use crate::recording::recorder::{Drawing, Limits, Wishes};
+use crate::recording::picture::{Counter, Drawing, Extras, Picture};
+use crate::recording::recorder::{Limits, Wishes};
 use crate::recording::sheet::Format;
 use clap::Args;
-use endat_host::motion::ranges;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -21,7 +20,7 @@ use std::time::SystemTime;
 #[derive(Args)]
 pub struct LogArgs {
     #[command(flatten)]
-    pub port: PortArgs,
+    pub port: RangedPort,
     /// Stop after so many sample sets [default: until Ctrl-C]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub samples: Option<String>,
@@ -218,14 +217,13 @@ impl LogArgs {
         card: &mut AnyCard,
         judge: Judge,
     ) -> Result<Wishes, GenError> {
-        let scales = card.scales().map_err(told)?;
+        let scales = scales(card)?;
         let plates = card.name_plates().map_err(told)?;
         let identity = *card.identity();
-        let ranges = ranges(&scales, &plates);
         let mut layout = Layout::of(scales.clone());
         layout.additional_data = identity.stream_additional_data;
         layout.decimal_comma = self.decimal_comma;
-        let derivation = Derivation::parse(&self.derive, &scales, &ranges, &layout.text())?;
+        let derivation = Derivation::parse(&self.derive, &scales, &layout.text())?;
         layout.derived = derivation.columns();
         let faults = Faults::named(&self.on_cause, judge)?;
         let events = faults.names();
@@ -239,7 +237,7 @@ impl LogArgs {
             let units: Vec<String> = units.collect();
             Drawing {
                 picture: Picture::new(&units, &layout.derived, judge, Extras::default()),
-                counter: Counter::new(&scales, &ranges),
+                counter: Counter::new(&scales),
             }
         });
         let minutes = |n| n * 60 * u64::from(identity.system_hz);
@@ -251,7 +249,6 @@ impl LogArgs {
                 port: self.port.name().to_owned(),
                 identity,
                 plates,
-                ranges,
                 every: checked.every,
                 events,
                 start: SystemTime::now(),

@@ -1,13 +1,12 @@
 //! The screen on a terminal: a thread looks at the card, so that keys are heard while it does not answer.
 
 use super::super::id::plate_text;
-use super::super::{interrupted, told, PortArgs};
+use super::super::{interrupted, told, RangedPort};
 use super::look::Look;
 use super::screen::{draw, Facts, Screen};
 use super::{Opened, Pace};
 use crate::cli::{colour, Outcome};
 use crate::error::GenError;
-use endat_host::motion::ranges;
 use ratatui::crossterm::event::{self, Event, KeyEventKind};
 use std::io;
 use std::sync::atomic::Ordering;
@@ -32,7 +31,6 @@ enum News {
 fn facts(opened: &mut Opened, port: &str) -> Result<Facts, GenError> {
     let identity = *opened.card.identity();
     let plates = opened.card.name_plates().map_err(told)?;
-    let ranges = ranges(&opened.scales, &plates);
     let about = format!(
         "{} channel{}, {} MHz",
         identity.channels,
@@ -47,13 +45,12 @@ fn facts(opened: &mut Opened, port: &str) -> Result<Facts, GenError> {
         port: port.to_owned(),
         about,
         scales: opened.scales.clone(),
-        ranges,
         plates: plates.into_iter().map(plate).collect(),
     })
 }
 
 /// The thread: looks until nobody listens.
-fn watch(port: &PortArgs, pace: Pace, tell: &Sender<News>) -> Result<(), GenError> {
+fn watch(port: &RangedPort, pace: Pace, tell: &Sender<News>) -> Result<(), GenError> {
     let mut opened = Opened::new(port)?;
     let facts = facts(&mut opened, port.name())?;
     if tell.send(News::Facts(facts.into())).is_err() {
@@ -100,7 +97,7 @@ fn first(news: &Receiver<News>, is_stopped: &dyn Fn() -> bool) -> Result<Option<
 }
 
 /// Runs until q, Ctrl-C, the end of the looks, or of the card.
-pub fn run(port: &PortArgs, pace: Pace) -> Result<Outcome, GenError> {
+pub fn run(port: &RangedPort, pace: Pace) -> Result<Outcome, GenError> {
     let stop = interrupted();
     let is_stopped = || stop.load(Ordering::Relaxed);
     let (tell, news) = channel();

@@ -6,7 +6,7 @@ mod screen;
 mod text;
 
 use super::super::Outcome;
-use super::{interrupted, settled, told, AnyCard, PortArgs};
+use super::{interrupted, scales, settled, AnyCard, RangedPort};
 use crate::error::GenError;
 use crate::number::{decimal_if, number_if};
 use clap::Args;
@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 #[derive(Args)]
 pub struct MonitorArgs {
     #[command(flatten)]
-    port: PortArgs,
+    port: RangedPort,
     /// Show so many times [default: until q or Ctrl-C]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     count: Option<String>,
@@ -51,10 +51,10 @@ struct Opened {
 }
 
 impl Opened {
-    fn new(port: &PortArgs) -> Result<Self, GenError> {
+    fn new(port: &RangedPort) -> Result<Self, GenError> {
         let mut card = port.open()?;
         settled(&mut card)?;
-        let scales = card.scales().map_err(told)?;
+        let scales = scales(&mut card)?;
         let watcher = Watcher::new(&card)?;
         Ok(Self {
             card,

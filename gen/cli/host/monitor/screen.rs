@@ -4,6 +4,7 @@ use super::super::read::{shown, verdict};
 use super::look::{Look, Seen};
 use super::text::{names, rate};
 use endat_host::motion::nearest;
+use endat_host::range;
 use endat_host::units::Scale;
 use ratatui::crossterm::event::{KeyCode, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -17,8 +18,6 @@ pub struct Facts {
     pub port: String,
     pub about: String,
     pub scales: Vec<Scale>,
-    /// Positions begin anew after so many.
-    pub ranges: Vec<Option<u64>>,
     /// Name plates, a line for each thing that is known.
     pub plates: Vec<String>,
 }
@@ -112,6 +111,15 @@ impl Screen {
         let scale = self.facts.scales.get(self.selected);
         let reading = self.seen(self.selected).map(|seen| seen.reading);
         if let (Some(scale), Some(reading)) = (scale, reading.filter(|r| r.valid)) {
+            if !scale.is_known() {
+                // A difference takes what a turn is.
+                self.trouble = Some(format!(
+                    "z: {}; {}",
+                    range::unknown(self.selected),
+                    range::remedy(self.selected)
+                ));
+                return;
+            }
             self.zeros[self.selected] = Some(scale.steps(reading.position).into());
         }
     }
@@ -126,8 +134,7 @@ impl Screen {
             return shown(reading, scale);
         };
         let steps = i128::from(scale.steps(reading.position)) - zero;
-        let range = self.facts.ranges.get(channel).copied().flatten();
-        let steps = range.map_or(steps, |range| nearest(steps, range));
+        let steps = scale.range().map_or(steps, |range| nearest(steps, range));
         let unit = scale.convert(0).unit;
         format!("{:+.*} {unit} z", scale.digits(), scale.value(steps))
     }

@@ -10,6 +10,7 @@ use crate::error::{shown, GenError};
 use crate::number;
 use crate::virtual_card::FAULTS;
 use endat_host::feed::NO_CAUSES;
+use endat_host::range;
 use endat_host::registers::Place;
 use endat_host::{causes, did_you_mean, HostError};
 use endat_sim::diagram::edges_svg;
@@ -236,6 +237,7 @@ impl Api {
                 "unit": scale.convert(0).unit,
                 "digits": scale.digits(),
                 "wraps_at": scale.wraps_at(),
+                "unknown": (!scale.is_known()).then(|| format!("{}; {}", range::unknown(n), range::remedy(n))),
                 "plate": text,
                 "serial": plate.and_then(|p| p.serial.clone()),
             })

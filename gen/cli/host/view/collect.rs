@@ -9,7 +9,6 @@ use crate::recording::sheet::{Sheet, Text};
 use endat_driver::Reading;
 use endat_host::card::Identity;
 use endat_host::feed::Row;
-use endat_host::motion::ranges;
 use endat_host::name_plate::NamePlate;
 use endat_host::name_plate::Told;
 use endat_host::owner::{Handle, Jobs, Losses};
@@ -95,7 +94,7 @@ impl State {
         };
         Self {
             session,
-            history: History::new(&scales, &ranges(&scales, &plates)),
+            history: History::new(&scales),
             count: Count::new(judge),
             last: None,
             results: Vec::new(),

@@ -38,8 +38,12 @@ struct Motion {
 impl Motion {
     /// Takes a position; gives it counted on, and the velocity.
     fn step(&mut self, time_s: f64, position: u64) -> (f64, f64) {
+        if !self.scale.is_possible(position) {
+            return (f64::NAN, f64::NAN);
+        }
         let total = self.turns.step(self.scale.steps(position));
         let velocity = self.velocity.step(time_s, total);
+        let velocity = velocity.filter(|_| self.scale.is_known());
         let velocity = velocity.map_or(f64::NAN, |steps| steps * self.scale.step());
         (self.scale.value(total), velocity)
     }
@@ -123,8 +127,8 @@ pub fn names(bits: u64) -> Vec<&'static str> {
 }
 
 impl History {
-    /// Of channels with these scales, whose positions begin anew after so many.
-    pub fn new(scales: &[Scale], ranges: &[Option<u64>]) -> Self {
+    /// Of channels with these scales. Velocity and difference are those of positions of which is known where they begin anew.
+    pub fn new(scales: &[Scale]) -> Self {
         let mut traces = Vec::new();
         for (n, scale) in scales.iter().enumerate() {
             let unit = scale.convert(0).unit;
@@ -140,7 +144,8 @@ impl History {
             });
         }
         let unit = |n: usize| scales[n].convert(0).unit;
-        let has_difference = scales.len() > 1 && unit(0) == unit(1);
+        let are_known = scales.iter().take(2).all(Scale::is_known);
+        let has_difference = scales.len() > 1 && unit(0) == unit(1) && are_known;
         if has_difference {
             traces.push(Trace {
                 name: "difference".into(),
@@ -150,10 +155,10 @@ impl History {
         }
         Self {
             scales: scales.to_vec(),
-            motions: (scales.iter().zip(ranges))
-                .map(|(scale, range)| Motion {
+            motions: (scales.iter())
+                .map(|scale| Motion {
                     scale: *scale,
-                    turns: Unwrap::new(*range),
+                    turns: Unwrap::new(scale.range()),
                     velocity: Velocity::default(),
                 })
                 .collect(),
@@ -295,8 +300,10 @@ mod tests {
     fn history(turns: u64) -> History {
         let scale = Scale::Rotary {
             steps_per_turn: TURN,
+            turns,
+            turns_at: None,
         };
-        History::new(&[scale], &[Some(turns * TURN)])
+        History::new(&[scale])
     }
 
     /// Catches a decimation that takes every nth row, or means.
@@ -372,5 +379,32 @@ mod tests {
         let at = |n: usize| plot.extremes[0][n][0];
         assert!((at(0) - 1800.0).abs() < 0.01 && at(1).is_nan());
         assert!((at(2) - 3240.0).abs() < 0.01 && at(3).is_nan());
+    }
+
+    /// Catches a velocity, or a difference, of positions of which nobody knows where they begin anew.
+    #[test]
+    fn counts_that_nobody_explains_have_no_velocity_and_no_difference() {
+        let row = |position: u64| {
+            let one = row(Some(position), "none");
+            Row {
+                cells: [one.cells.clone(), one.cells].concat(),
+                ..one
+            }
+        };
+        for (scale, is_known) in [
+            (Scale::Counts { turns_at: Some(24) }, false),
+            (Scale::of_bits(17, 16, Some(24)), true),
+        ] {
+            let mut all = History::new(&[scale; 2]);
+            let names: Vec<&str> = all.traces().iter().map(|t| t.name.as_str()).collect();
+            assert_eq!(names.contains(&"difference"), is_known);
+            // The last of a turn, and the first of the next one.
+            all.push(0.0, &row(100 << 24 | 130_285));
+            all.push(1.0, &row(101 << 24));
+            let velocity = all.plot(0.5, 1.5, 1).extremes[1][0][0];
+            let wanted = 787.0 * 360.0 / 131_072.0;
+            assert_eq!(!velocity.is_nan(), is_known, "{velocity}");
+            assert!(!is_known || (velocity - wanted).abs() < 1e-9, "{velocity}");
+        }
     }
 }

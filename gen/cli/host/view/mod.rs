@@ -14,7 +14,7 @@ mod history;
 mod http;
 
 use super::super::Outcome;
-use super::{interrupted, told, PortArgs};
+use super::{interrupted, told, RangedPort};
 use crate::error::GenError;
 use crate::virtual_card::{card_at, is_virtual};
 use api::Api;
@@ -43,7 +43,7 @@ const SILENT_SIMULATED: Duration = Duration::from_secs(10);
 #[derive(Args)]
 pub struct ViewArgs {
     #[command(flatten)]
-    port: PortArgs,
+    port: RangedPort,
     /// Address of the page; port 0 takes a free one. Others than 127.0.0.1 and ::1 need the token that is printed [default: 127.0.0.1:8480]
     #[arg(long, value_name = "HOST:PORT")]
     listen: Option<String>,
@@ -129,10 +129,16 @@ pub fn run(arguments: &ViewArgs) -> Result<Outcome, GenError> {
             file.display()
         )));
     }
+    let ranges = arguments.port.ranges()?;
     let find: Find = Arc::new(move || {
         let is_real = !is_virtual(&name);
-        let name = name.clone();
-        Handle::open(move || card_at(&name, baud), is_real, || Ok(()))?
+        let (name, ranges) = (name.clone(), ranges.clone());
+        let card = move || {
+            let mut card = card_at(&name, baud)?;
+            card.set_ranges(ranges)?;
+            Ok(card)
+        };
+        Handle::open(card, is_real, || Ok(()))?
     });
     let stop = interrupted();
     let (shared, collecting) = Shared::collect(find, stop.clone()).map_err(told)?;

@@ -127,6 +127,7 @@ function shown() {
     const about = [];
     if (view.zero[n] !== undefined) about.push("from the zero that was set");
     else if (one.turns) about.push(`${one.turns} turns`);
+    if (channel.unknown) about.push("length of a turn unknown: view --range");
     if (one.raw !== null) about.push("0x" + one.raw);
     if (!isNone && one.delay_ns !== null && channel.protocol === "EnDat") about.push(`line delay ${one.delay_ns.toFixed(0)} ns`, `recovery time ${one.recovery_us.toFixed(2)} us`);
     if (channel.serial) about.push("serial number " + channel.serial);
@@ -374,7 +375,9 @@ function show(what) {
 }
 
 function zero() {
-  now.channels.forEach((one, n) => { if (one.continuous !== null) view.zero[n] = one.continuous; });
+  const unknown = card.channels.find((channel) => channel.unknown);
+  if (unknown) complaint = { text: "zero: " + unknown.unknown, until: performance.now() + 10000 };
+  now.channels.forEach((one, n) => { if (one.continuous !== null && !card.channels[n].unknown) view.zero[n] = one.continuous; });
   shown(); redraw();
 }
 

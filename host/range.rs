@@ -1,0 +1,196 @@
+//! What positions are, as somebody says who knows the encoders: `0=17+16` are 17 bits of angle and 16 that count turns in channel 0,
+//! `1=linear` is a scale. It counts before what the card and name plates say.
+
+use crate::units::Scale;
+use crate::HostError;
+use endat_driver::Range;
+use endat_regs::{Protocol, CHANNELS_MAX};
+
+/// One that is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Said {
+    Linear,
+    Rotary { single: u32, multi: u32 },
+}
+
+/// What is said of some channels.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ranges([Option<Said>; CHANNELS_MAX]);
+
+/// How it is written.
+const FORM: &str = "write CHANNEL=SINGLE+MULTI, as in 0=17+16 for 17 bits of angle and 16 that count turns (0=17 for none), or CHANNEL=linear";
+
+/// Why something of a channel is refused.
+pub fn unknown(channel: usize) -> String {
+    format!("nobody says where positions of channel {channel} begin anew")
+}
+
+/// What makes the range of a channel known to the command that has just refused something.
+pub fn remedy(channel: usize) -> String {
+    format!("give --range {channel}=SINGLE+MULTI (bits of the angle and bits that count turns, as in {channel}=17+16) or --range {channel}=linear")
+}
+
+impl Ranges {
+    /// What these texts say.
+    pub fn parse(texts: &[String]) -> Result<Self, HostError> {
+        let mut all = Self::default();
+        for text in texts {
+            let wrong = |why: &str| HostError::Name(format!("--range = {text}: {why}"));
+            let (channel, said) = text.split_once('=').ok_or_else(|| wrong(FORM))?;
+            let channel: usize = channel.trim().parse().map_err(|_| wrong(FORM))?;
+            let place = all.0.get_mut(channel).ok_or_else(|| {
+                wrong(&format!(
+                    "no card has a channel {channel}; there are 0 to {}",
+                    CHANNELS_MAX - 1
+                ))
+            })?;
+            let number = |text: &str| text.trim().parse::<u32>().map_err(|_| wrong(FORM));
+            let said = match said.trim().split_once('+') {
+                None if said.trim() == "linear" => Said::Linear,
+                None => Said::Rotary {
+                    single: number(said)?,
+                    multi: 0,
+                },
+                Some((single, multi)) => Said::Rotary {
+                    single: number(single)?,
+                    multi: number(multi)?,
+                },
+            };
+            // Of any protocol.
+            if said.range(Protocol::Endat).is_none() {
+                return Err(wrong(
+                    "a position has at most 48 bits, and an angle 1 at least; give fewer bits",
+                ));
+            }
+            if place.replace(said).is_some() {
+                return Err(wrong(&format!(
+                    "channel {channel} has one already; give one range for each channel"
+                )));
+            }
+        }
+        Ok(all)
+    }
+
+    /// Nothing is said.
+    pub fn is_empty(&self) -> bool {
+        self.0.iter().all(Option::is_none)
+    }
+
+    /// Refuses those of channels that there are not.
+    pub fn check(&self, channels: usize) -> Result<(), HostError> {
+        match self.0.iter().skip(channels).position(Option::is_some) {
+            None => Ok(()),
+            Some(beyond) => Err(HostError::Name(format!(
+                "--range = {}: there is no channel of that number; the last one is {}",
+                channels + beyond,
+                channels.saturating_sub(1)
+            ))),
+        }
+    }
+
+    /// The scale of a channel of this protocol, whose positions have so many bits, if it is said and known how many.
+    pub fn scale(
+        &self,
+        channel: usize,
+        protocol: Protocol,
+        position_bits: Option<u32>,
+    ) -> Result<Option<Scale>, HostError> {
+        let Some(said) = self.0.get(channel).copied().flatten() else {
+            return Ok(None);
+        };
+        let wrong = |why: String| HostError::Name(format!("--range = {channel}={said}: {why}"));
+        let range = said.range(protocol).ok_or_else(|| {
+            let (name, at) = (protocol.name(), protocol.row().turns_at.unwrap_or(0));
+            wrong(format!(
+                "a position of {name} has {at} bits of angle and {} of turns; give no more of either",
+                endat_regs::protocol::MAX_POSITION_BITS - at
+            ))
+        })?;
+        if let (Said::Rotary { single, multi }, Some(bits)) = (said, position_bits) {
+            if single + multi != bits && protocol.row().turns_at.is_none() {
+                return Err(wrong(format!(
+                    "is {} bits, and positions of the channel have {bits}; give as many, or linear",
+                    single + multi
+                )));
+            }
+        }
+        Ok(Scale::of_range(range))
+    }
+}
+
+impl Said {
+    fn range(self, protocol: Protocol) -> Option<Range> {
+        match self {
+            Self::Linear => Some(Range::Linear),
+            Self::Rotary { single, multi } => Range::rotary(single, multi, protocol),
+        }
+    }
+}
+
+impl std::fmt::Display for Said {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Linear => f.write_str("linear"),
+            Self::Rotary { single, multi } => write!(f, "{single}+{multi}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(texts: &[&str]) -> Result<Ranges, String> {
+        let texts: Vec<String> = texts.iter().map(|t| (*t).to_owned()).collect();
+        Ranges::parse(&texts).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_range_that_is_said_fits_the_positions_of_its_channel() {
+        let said = parsed(&["0=17+16", "1=linear", "3=29"]).unwrap();
+        let scale = |channel, protocol, bits| said.scale(channel, protocol, bits);
+        let t_format = scale(0, Protocol::TFormat, Some(48)).unwrap().unwrap();
+        assert_eq!(t_format, Scale::of_bits(17, 16, Some(24)));
+        assert_eq!(
+            scale(1, Protocol::Ssi, Some(24)).unwrap(),
+            Some(Scale::Counted)
+        );
+        assert_eq!(scale(2, Protocol::Ssi, Some(24)).unwrap(), None);
+        let endat = scale(3, Protocol::Endat, Some(29)).unwrap().unwrap();
+        assert_eq!(endat, Scale::singleturn(29));
+        let why = scale(0, Protocol::Ssi, Some(25)).unwrap_err().to_string();
+        assert!(
+            why.contains("--range = 0=17+16: is 33 bits") && why.contains("have 25"),
+            "{why}"
+        );
+        let why = scale(3, Protocol::TFormat, None).unwrap_err().to_string();
+        assert!(
+            why.contains("has 24 bits of angle and 24 of turns"),
+            "{why}"
+        );
+        assert!(said.check(4).is_ok());
+        let why = said.check(2).unwrap_err().to_string();
+        assert!(why.contains("--range = 3: there is no channel"), "{why}");
+    }
+
+    #[test]
+    fn what_is_no_range_is_refused_with_its_form() {
+        for (text, told) in [
+            ("17+16", "write CHANNEL=SINGLE+MULTI"),
+            ("0=", "write CHANNEL=SINGLE+MULTI"),
+            ("0=17+x", "write CHANNEL=SINGLE+MULTI"),
+            ("0=0+16", "an angle 1 at least"),
+            ("0=40+9", "at most 48 bits"),
+            ("0=4000000000+4000000000", "at most 48 bits"),
+            ("8=17", "no card has a channel 8"),
+        ] {
+            let why = parsed(&[text]).unwrap_err();
+            assert!(
+                why.contains(&format!("--range = {text}: ")) && why.contains(told),
+                "{why}"
+            );
+        }
+        let twice = parsed(&["0=17", "0=linear"]).unwrap_err();
+        assert!(twice.contains("has one already"), "{twice}");
+    }
+}
