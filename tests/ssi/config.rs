@@ -205,7 +205,8 @@ fn the_hash_is_of_what_decides() {
     let hash = |text: &str| parse("ssi.toml", text).unwrap().hash;
     for (from, to) in [
         ("clock_hz = 1_000_000 ", "clock_hz = 800_000 "),
-        ("position_bits = 24\n", "position_bits = 23\n"),
+        ("position_bits = 25 ", "position_bits = 24 "),
+        ("multi_turn_bits = 12 ", "multi_turn_bits = 11 "),
         ("linear = true ", "linear = false "),
         ("code = \"gray\" ", "code = \"binary\" "),
         ("twice = false ", "twice = true "),
