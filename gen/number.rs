@@ -37,6 +37,18 @@ pub fn number(flag: &str, text: &str, range: RangeInclusive<u64>) -> Result<u64,
     }
 }
 
+/// The same, for the parser of the command line, which names the option itself.
+pub fn parser(low: u32, high: u32) -> impl Fn(&str) -> Result<u32, String> + Clone {
+    move |text| {
+        let found = number("", text, low.into()..=high.into());
+        found.map(|number| number as u32).map_err(|error| {
+            let text = error.to_string();
+            let what = text.split_once(": ").map(|(_, what)| what.to_owned());
+            what.unwrap_or(text)
+        })
+    }
+}
+
 /// A number with a point, within `range`.
 pub fn decimal(flag: &str, text: &str, range: RangeInclusive<f64>) -> Result<f64, GenError> {
     let (low, high) = (range.start(), range.end());

@@ -71,7 +71,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         // keys
         ("filter_ns = 20", "fliter_ns = 20", "endat.fliter_ns: unknown key; did you mean filter_ns?"),
         ("baud = ", "colour = 7\nbaud = ", "link.colour: unknown key; known keys here: baud, read_hz"),
-        ("name = \"s6", "names = 1\nname = \"s6", "names: unknown key; did you mean name?"),
+        ("name = \"s6", "names = 1\nname = \"s6", "names: unknown key; name is there already, remove this one"),
         ("[board]", "[colour]\nx = 1\n[board]", "colour: unknown key; known keys here: board, channel"),
         ("encoder = ", "phase = 1\nencoder = ", "channel[0].phase: unknown key; it belongs to [line]"),
         ("[board]", "cable_m = 3\n[board]", "cable_m: unknown key; it belongs to [[channel]] or to [endat]"),
@@ -105,7 +105,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("start_window_ns = 80", "start_window_ns = 0", "endat.start_window_ns = 0: is 0 cycles, outside 1..16"),
         ("start_window_ns = 80", "start_window_ns = 170", "use 10..160 ns"),
         ("tcal_max_ns = 5_000", "tcal_max_ns = 0", "endat.tcal_max_ns = 0: outside 1..4082800"),
-        ("recovery_min_ns = 10_000", "recovery_min_ns = 40_000", "above recovery_max_ns = 30000; lower it, or raise recovery_max_ns"),
+        ("recovery_min_ns = 10_000", "recovery_min_ns = 40_000", "above recovery_max_ns = 30000; lower it to 30000, or raise recovery_max_ns to 40000"),
         ("recovery_min_ns = 10_000", "recovery_min_ns = 100", "outside 1250..80390"),
         ("recovery_max_ns = 30_000", "recovery_max_ns = 4_000_000_000", "outside 1250..80390"),
         ("cable_m = 100", "cable_m = 1_000", "endat.cable_m = 1000: outside 0..780"),
@@ -129,7 +129,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("[stream]", "phase = \"frame\"\n[stream]", "line.phase = \"frame\": takes the part alignment"),
         ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nphase = \"mean\"\n# with", "line.phase = \"mean\": unknown; use tracked, frame, fixed"),
         ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nphase = \"fixed\"\n# with", "line.phase = \"fixed\": takes line.fixed_delay_ns"),
-        ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nsamples = 2\n# with", "line.samples = 2: not a number of samples; use 1, or 3"),
+        ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nsamples = 2\n# with", "line.samples = 2: not a number of samples; use 1 or 3"),
         ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nfixed_delay_ns = 30_000\n# with", "line.fixed_delay_ns = 30000: outside 0..20470"),
         ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\ndrift_limit_ns = 3_000\n# with", "line.drift_limit_ns = 3000: outside 0..2550"),
         // service
@@ -153,7 +153,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("name = \"s6_two_channel\"", "name = \"a\\u0000b\"", "has the character '\\0'"),
         // board and pins
         ("name = \"papilio_pro\"", "name = \"papilio\"", "board.name = \"papilio\": unknown board; known boards: arty_a7_35, de10_nano, hx8k_b_evn, icebreaker, papilio_pro"),
-        ("[pins]", "[pins]\ntrigger_i = \"P145\"", "pins.trigger_i = \"P145\": no such pin; the package of xc6slx9-tqg144-2 has P1..P144"),
+        ("[pins]", "[pins]\ntrigger_i = \"P145\"", "pins.trigger_i = \"P145\": no such pin, the package of xc6slx9-tqg144-2 has P1..P144; use A0.."),
         ("[pins]", "[pins]\ntrigger_i = \"P2\"", "is not on a connector of papilio_pro; use A0..A15"),
         ("[pins]", "[pins]\ntrigger_i = \"D1\"", "is neither a pin (P48) nor a connector position (A0)"),
         ("[pins]", "[pins]\ntrigger_i = \"C0\"", "P114 already carries endat_clk0_o"),
@@ -175,7 +175,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("system_hz = 100_000_000", "system_hz = 249_000_000", "use 248000000 Hz"),
         // the share that is to blame
         ("tcal_max_ns = 5_000", "tcal_max_ns = 4_090_000", "endat.tcal_max_ns = 4090000: outside 1..4082800"),
-        ("recovery_max_ns = 30_000", "recovery_max_ns = 3_750", "endat.recovery_max_ns = 3750: below recovery_min_ns = 10000; add recovery_min_ns = 1250"),
+        ("recovery_max_ns = 30_000", "recovery_max_ns = 3_750", "endat.recovery_max_ns = 3750: below recovery_min_ns = 10000; use at least 10000, or add recovery_min_ns = 1250"),
         // text
         ("encoder = \"RCN 8510\"", "encoder = \"a\\nb\"", "channel[0].encoder = \"a\\nb\": has the character '\\n', which cannot be seen"),
         ("encoder = \"RCN 8510\"", "encoder = \"\\u001b[31m\"", "has the character '\\u{1b}'"),
@@ -493,7 +493,7 @@ fn a_frame_that_waits_too_long_for_the_encoder_blames_tcal() {
     assert_eq!(found.len(), 1, "{found:#?}");
     assert!(found[0].line != line && found[0].text.contains("channel 0"));
     assert!(
-        found[0].text.ends_with("takes up to 144.11 us, the largest part from tcal_max_ns = 100000, so at most 6939 Hz; lower it, or shorten tcal_max_ns, or shorten recovery_max_ns, or raise clock_hz"),
+        found[0].text.ends_with("takes up to 144.11 us, the largest part from tcal_max_ns = 100000, so at most 6939 Hz; lower it to 6939, or make the frame shorter: shorten tcal_max_ns, or shorten recovery_max_ns, or raise clock_hz"),
         "{}",
         found[0].text
     );

@@ -16,6 +16,7 @@ mod packages;
 mod pages;
 #[allow(dead_code)] // other topics take the rest
 mod program;
+mod remedies;
 mod shmoo;
 mod sigrok;
 #[allow(dead_code, unused_imports)]

@@ -91,11 +91,11 @@ fn wrong_axes_are_told_with_their_limits() {
     for (arguments, wanted) in [
         (
             vec!["--x", "nope=1:2:1"],
-            "--x = nope=1:2:1: begins with no quantity; one of cable_m, clock_mhz",
+            "--x = nope=1:2:1: begins with no quantity, as there are cable_m, clock_mhz",
         ),
         (
             vec!["--x", "cable_m"],
-            "--x = cable_m: has no value; write cable_m=...",
+            "--x = cable_m: has no value; write, for example, cable_m=0:100:10",
         ),
         (
             vec!["--x", "cable_m=5"],

@@ -208,7 +208,7 @@ fn read_file(
     name: &str,
     templates: BTreeMap<&'static str, String>,
 ) -> Option<Family> {
-    let document = parse(source)?;
+    let document = parse(source, &[])?;
     let empty = DeTable::new();
     let root = Table::root(source, &document);
     let word = |key| root.required_string(key).map(|at| at.value);

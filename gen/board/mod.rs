@@ -26,6 +26,7 @@ use crate::form::with_text;
 use package::Word;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// Stands in a connector's list for a position without a pin.
 const NO_PIN: &str = "-";
@@ -95,9 +96,21 @@ fn parts(word: &str) -> Option<(&str, usize)> {
 impl Board {
     /// The board of this name; `Err` has the message.
     pub fn named(name: &str) -> Result<Self, String> {
+        static READ: Mutex<BTreeMap<String, Board>> = Mutex::new(BTreeMap::new());
+        let read = || READ.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(board) = read().get(name) {
+            return Ok(board.clone());
+        }
+        let board = Self::read_shipped(name)?;
+        read().insert(name.into(), board.clone());
+        Ok(board)
+    }
+
+    /// The same, read anew.
+    fn read_shipped(name: &str) -> Result<Self, String> {
         let Some(text) = shipped::board(name) else {
             return Err(format!(
-                "unknown board; known boards: {}; a file of your own: --board FILE, or file = in [board]",
+                "unknown board; known boards: {}",
                 names().join(", ")
             ));
         };
@@ -156,7 +169,10 @@ impl Board {
         let is_of_connector =
             parts(&word).is_some_and(|(name, _)| self.connectors.contains_key(name));
         match self.package.look_up(&word) {
-            Word::NoPin if !is_of_connector => Err(self.no_such_pin()),
+            Word::NoPin if !is_of_connector => {
+                let what = self.no_such_pin().replacen(';', ",", 1);
+                Err(format!("{what}; {}", self.free_pins()))
+            }
             Word::Pin(pin) if self.is_free(&pin) => Ok(pin),
             Word::NoPin | Word::Pin(_) => Err(format!(
                 "is not on a connector of {}; {}",

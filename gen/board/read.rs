@@ -5,6 +5,7 @@ use super::family::Family;
 use super::keys::{self, WORD_MAX};
 use super::package::{Package, Word};
 use super::ports::{bus_ports, signals, BUSES};
+use super::BOARD_KEYS;
 use super::{Board, Start, NO_PIN};
 use crate::error::Diagnostic;
 use crate::form::document::parse;
@@ -44,7 +45,7 @@ struct Tables<'s, 't> {
 }
 
 fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
-    let document = parse(source)?;
+    let document = parse(source, BOARD_KEYS)?;
     let empty = DeTable::new();
     let root = Table::root(source, &document);
     let table = |key| root.table(key, &empty);

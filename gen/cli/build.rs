@@ -20,7 +20,7 @@ pub struct BuildArgs {
     #[command(flatten)]
     emission: EmissionArgs,
     /// Seeds of the placer that are tried, one after another, until timing is met
-    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value = "5", value_parser = crate::number::parser(1, 1000), allow_negative_numbers = true)]
     seeds: u32,
     /// With the vendor's tool, also where open tools know the board
     #[arg(long)]

@@ -254,8 +254,12 @@ fn board_of(option: &str, word: &str) -> Result<Board, GenError> {
     if word.contains(['/', '\\', '.']) {
         return Ok(Board::from_file(Path::new(word))?);
     }
-    Board::named(word)
-        .map_err(|text| GenError::input(format!("{option} = {}: {text}", shown(word))))
+    Board::named(word).map_err(|text| {
+        GenError::input(format!(
+            "{option} = {}: {text}, or give a file of your own, as {option} FILE.toml",
+            shown(word)
+        ))
+    })
 }
 
 impl SourceArgs {

@@ -28,7 +28,7 @@ pub struct ProveArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
-    #[arg(long, value_name = "DELAY_CYCLES")]
+    #[arg(long, value_name = "DELAY_CYCLES", value_parser = crate::number::parser(0, 1023), allow_negative_numbers = true)]
     frames: Option<u32>,
     /// DATA while nobody drives it, in these frames [default: low behind an input filter, otherwise anything]
     #[arg(long, value_enum, requires = "frames")]

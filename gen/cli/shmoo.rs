@@ -256,6 +256,12 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
         )));
     }
     let (_, fastest) = Quantity::Clock.range(system_hz, conditions.receiver);
+    let mut clocks_mhz: Vec<f64> = CLOCKS_MHZ.into_iter().collect();
+    clocks_mhz.retain(|mhz| *mhz <= fastest);
+    if clocks_mhz.is_empty() {
+        // At a slow system clock.
+        clocks_mhz.push(fastest);
+    }
     let usual = |axis: &str| match axis {
         "--x" => Axis {
             quantity: Quantity::Cable,
@@ -263,10 +269,7 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
         },
         _ => Axis {
             quantity: Quantity::Clock,
-            values: CLOCKS_MHZ
-                .into_iter()
-                .filter(|mhz| *mhz <= fastest)
-                .collect(),
+            values: clocks_mhz.clone(),
         },
     };
     let axis = |flag: &str, text: &Option<String>| match text {
@@ -305,19 +308,37 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
     Ok(plan)
 }
 
+/// How a quantity may be written with this option.
+fn example(flag: &str, name: &str) -> String {
+    let quantity = Quantity::ALL.into_iter().find(|q| q.name() == name);
+    let (one, axis) = match quantity.unwrap_or(Quantity::Cable) {
+        Quantity::Cable => ("50", "0:100:10"),
+        Quantity::Clock => ("0.2", "0.1,0.2"),
+        Quantity::Delay => ("100", "0:500:50"),
+        Quantity::Jitter => ("20", "0:100:10"),
+        Quantity::Distortion => ("10", "-50:50:10"),
+        Quantity::Noise => ("10", "0:100:10"),
+        Quantity::Filter => ("2", "0:4:1"),
+        Quantity::Offset => ("10", "-40:40:10"),
+    };
+    format!("{name}={}", if flag == "--at" { one } else { axis })
+}
+
 /// A quantity and what stands behind its name.
 fn named<'t>(flag: &str, text: &'t str) -> Result<(Quantity, &'t str), GenError> {
     let (name, rest) = text.split_once('=').unwrap_or((text, ""));
     match Quantity::ALL.into_iter().find(|q| q.name() == name) {
         Some(quantity) if !rest.is_empty() => Ok((quantity, rest)),
         Some(_) => Err(GenError::input(format!(
-            "{flag} = {}: has no value; write {name}=...",
-            shown(text)
+            "{flag} = {}: has no value; write, for example, {}",
+            shown(text),
+            example(flag, name)
         ))),
         None => Err(GenError::input(format!(
-            "{flag} = {}: begins with no quantity; one of {}",
+            "{flag} = {}: begins with no quantity, as there are {}; write, for example, {}",
             shown(text),
-            Quantity::ALL.map(Quantity::name).join(", ")
+            Quantity::ALL.map(Quantity::name).join(", "),
+            example(flag, Quantity::Cable.name())
         ))),
     }
 }

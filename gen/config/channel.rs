@@ -5,7 +5,7 @@ use super::reader::{At, Table};
 use super::trigger;
 use crate::form::key::Key;
 use crate::other_protocol::Other;
-use endat_hdl::config::{limits, ChannelSpec, Limits, PositionRange, START_WINDOW_BITS};
+use endat_hdl::config::{limits, narrowest, ChannelSpec, Limits, PositionRange, START_WINDOW_BITS};
 use endat_hdl::endat::timing::cycles_at_most;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::protocols::Spoken;
@@ -37,7 +37,12 @@ pub type LineKeys = BTreeMap<&'static str, Option<(String, At<u64>)>>;
 
 pub fn read_line_keys(table: &Table<'_, '_>, system_hz: Option<u64>) -> LineKeys {
     let written = of_lines().filter_map(|key| {
-        let value = table.integer(key, &limits(key.name, system_hz));
+        // A number that is none at all is answered with what goes with every cable.
+        let value = table.integer_or(
+            key,
+            &limits(key.name, system_hz),
+            &narrowest(key.name, system_hz),
+        );
         let place = |at| (table.name(key.name), at);
         table.has(key.name).then(|| (key.name, value.map(place)))
     });

@@ -11,7 +11,7 @@ use endat_hdl::config::{LineParts, PhaseSource};
 static NUMBERS: [&Key; 3] = [&FIXED_DELAY_NS, &DRIFT_LIMIT_NS, &SAMPLES];
 
 /// Reads the table; everything in it may be left out. `None` if something is wrong.
-pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<LineParts> {
+pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>, may_speak: bool) -> Option<LineParts> {
     let mut parts = LineParts::default();
     let named = read_parts(
         table,
@@ -36,7 +36,12 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<LineParts> 
             .chain(NUMBERS.into_iter().zip(&numbers).filter_map(number));
         return match settings.next() {
             Some((key, line, value)) => {
-                let text = "takes the part alignment; add it to line.parts, or remove the key";
+                let text = match may_speak {
+                    true => "takes the part alignment; add it to line.parts, or remove the key",
+                    false => {
+                        "takes a channel that speaks EnDat, and this card has none; remove the key"
+                    }
+                };
                 table.complain(line, key, &value, text);
                 None
             }
@@ -78,7 +83,7 @@ fn within(table: &Table<'_, '_>, key: &Key, number: &At<u64>, system_hz: Option<
     let limits = key.limits(system_hz);
     let text = match key.name == SAMPLES.name {
         true if !SAMPLE_COUNTS.contains(&value) => {
-            "not a number of samples; use 1, or 3 for their majority".to_owned()
+            "not a number of samples; use 1 or 3 (their majority)".to_owned()
         }
         false if !limits.contains(value) => limits.to_string(),
         _ => return true,

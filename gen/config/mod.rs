@@ -26,8 +26,9 @@ pub use start::preset_for;
 
 use crate::board::{Assignment, Board, Pll};
 use crate::error::{shown, Diagnostic, GenError};
+pub use crate::form::asked;
 use crate::form::with_text;
-pub(crate) use crate::form::{asked, document, reader};
+pub(crate) use crate::form::{document, reader};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CardConfig;
 use endat_regs::Protocol;

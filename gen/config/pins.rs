@@ -1,8 +1,10 @@
-//! Which port of the board top is on which pin.
+//! The board, and which port of its top is on which pin.
 
+use super::keys::{BOARD_FILE, BOARD_NAME};
 use super::reader::{Source, Table};
 use crate::board::{Assignment, Board, Kind, OSCILLATOR_PORT};
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// The pin of every port; complaints go to `source`.
 pub(super) fn assign_pins(
@@ -19,7 +21,7 @@ pub(super) fn assign_pins(
             pins.complain(at.line, signal, &format!("{:?}", at.value), &text);
         }
     }
-    let taken: BTreeSet<String> = ports
+    let taken_pins: BTreeSet<String> = ports
         .iter()
         .filter_map(|(signal, _)| {
             let user = moved.iter().find(|(s, _)| s == signal);
@@ -28,7 +30,7 @@ pub(super) fn assign_pins(
         })
         .filter_map(|word| board.pin(word).ok())
         .collect();
-    let mut free = board.places().filter(|(_, pin)| !taken.contains(*pin));
+    let mut free = board.places().filter(|(_, pin)| !taken_pins.contains(*pin));
     let mut all = vec![Assignment {
         signal: OSCILLATOR_PORT.into(),
         kind: Kind::Oscillator,
@@ -73,8 +75,14 @@ pub(super) fn assign_pins(
             } else {
                 &signal
             };
-            let text =
-                format!("{pin} already carries {taken}; choose a free pin for one of the two");
+            let free = board.places().find(|(_, pin)| !taken_pins.contains(*pin));
+            let remedy = match free {
+                Some((place, _)) => {
+                    format!("use another pin for one of the two, for example {place}")
+                }
+                None => "remove the key, or one of the other pins".into(),
+            };
+            let text = format!("{pin} already carries {taken}; {remedy}");
             pins.complain(at, mover, &format!("{place:?}"), &text);
             continue;
         }
@@ -87,4 +95,43 @@ pub(super) fn assign_pins(
         });
     }
     all
+}
+
+/// The board that is asked for, by name or by file; `other` takes its place.
+pub(super) fn read_board(
+    source: &Source<'_>,
+    table: &Table<'_, '_>,
+    other: Option<&Board>,
+) -> Option<Board> {
+    if let Some(other) = other {
+        table.know(&[&BOARD_NAME, &BOARD_FILE]);
+        return Some(other.clone());
+    }
+    // Not asked for where it does not stand: nobody can guess a file.
+    table.know(&[&BOARD_FILE]);
+    if table.has(BOARD_FILE.name) {
+        let file = table.string(&BOARD_FILE)?;
+        table.refuse(
+            &BOARD_NAME,
+            "file names a board, too; remove one of the two",
+        );
+        let folder = Path::new(source.file).parent().unwrap_or(Path::new(""));
+        return match Board::from_file(&folder.join(&file.value)) {
+            Ok(board) => Some(board),
+            Err(wrong) => {
+                source.adopt(wrong);
+                None
+            }
+        };
+    }
+    let name = table.required_string(&BOARD_NAME)?;
+    match Board::named(&name.value) {
+        Ok(board) => Some(board),
+        Err(text) => {
+            let shown = format!("{:?}", name.value);
+            let text = format!("{text}, or write file = \"FILE.toml\" in its place");
+            table.complain(name.line, BOARD_NAME.name, &shown, &text);
+            None
+        }
+    }
 }

@@ -11,6 +11,13 @@ fn know_all(table: &Table<'_, '_>) {
     table.know(&of_channels(CARD_FORM).collect::<Vec<_>>());
 }
 
+/// Whether a channel speaks EnDat, as far as can be said before it is read.
+pub fn may_be_endat(table: &Table<'_, '_>) -> bool {
+    let word = table.peek(PROTOCOL.name);
+    let others = Protocol::ALL.iter().filter(|p| **p != Protocol::Endat);
+    word.is_none_or(|word| !others.clone().any(|p| p.row().word == word))
+}
+
 /// What a channel of a card speaks; `None` for what is no protocol. Keys of other protocols are refused.
 pub fn read(table: &Table<'_, '_>) -> Option<Protocol> {
     let word = table.string(&PROTOCOL);

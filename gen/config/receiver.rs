@@ -5,7 +5,7 @@ use super::channel::read_encoder;
 use super::check_name;
 use super::device::read_initial_values;
 use super::document::parse;
-use super::keys::{tables, BUS, CARD_FORM, CHANNELS, NAME, PROTOCOL, RECEIVER_FORM};
+use super::keys::{tables, BUS, CARD_FORM, CHANNELS, KEYS, NAME, PROTOCOL, RECEIVER_FORM};
 use super::reader::{Source, Table};
 use super::words::RECEIVER_BUS;
 use crate::form::key::Key;
@@ -56,7 +56,7 @@ pub fn receiver_line(text: &str) -> Option<usize> {
 
 /// Reads a whole file; complaints go to `source`, and `None` means that there was at least one.
 pub fn read(source: &Source<'_>) -> Option<Receiver> {
-    let document = parse(source)?;
+    let document = parse(source, KEYS)?;
     let empty = DeTable::new();
     let root = Table::root(source, &document);
     let name = root.string(&NAME);
@@ -86,7 +86,8 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
     }
     let device = root.table("device", &empty);
     let initial_values = read_initial_values(&device);
-    for table in channels.iter().chain([&host, &device, &root]) {
+    // A second channel is refused as a whole.
+    for table in channels.iter().take(1).chain([&host, &device, &root]) {
         table.finish();
     }
     let (encoder, start) = channel?;

@@ -57,7 +57,12 @@ pub fn read(table: &Table<'_, '_>, around: Around) -> Option<SafetyParts> {
     }
     if let Some(period) = &period {
         if !tests {
-            let text = "takes the part error_test; add it to safety.parts, or remove the key";
+            let text = match around.has_endat {
+                true => "takes the part error_test; add it to safety.parts, or remove the key",
+                false => {
+                    "takes a channel that speaks EnDat, and this card has none; remove the key"
+                }
+            };
             table.complain(period.line, PERIOD.name, &period.value.to_string(), text);
             return None;
         }

@@ -4,7 +4,7 @@ use super::channel::{check_overridden, read_endat, read_line_keys, read_other, C
 use super::device::read_initial_values;
 use super::document::parse;
 use super::keys;
-use super::pins::assign_pins;
+use super::pins::{assign_pins, read_board};
 use super::reader::{At, Source, Table};
 use super::{
     base, canonical, check_name, line, outputs, protocol, safety, service, stream, trigger, Project,
@@ -14,7 +14,6 @@ use crate::protocols;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::*;
 use endat_regs::Protocol;
-use std::path::Path;
 use toml::de::DeTable;
 
 /// The tables of a file; what is not there is empty.
@@ -124,9 +123,11 @@ impl<'s, 't> Written<'s, 't> {
         base::check_sck(&t.host, bus, system_hz);
         let base_address = base::read(&t.host, bus);
         let defaults = read_line_keys(&t.endat, system_hz);
-        let line = line::read(&t.line, system_hz);
-        let is_aligned = line.is_some_and(|parts| parts.alignment);
         let channel_tables = t.root.tables(keys::CHANNELS);
+        let tables = channel_tables.iter().flatten();
+        let may_speak = tables.clone().any(protocol::may_be_endat) || tables.count() == 0;
+        let line = line::read(&t.line, system_hz, may_speak);
+        let is_aligned = line.is_some_and(|parts| parts.alignment);
         let read_channel = |table| match protocols::other(protocol::read(table)?) {
             Some(other) => read_other(other, table, system_hz),
             None => read_endat(table, &defaults, system_hz, is_aligned),
@@ -147,7 +148,7 @@ impl<'s, 't> Written<'s, 't> {
         let baud = || t.link.required_integer(&keys::BAUD, &baud_limits);
         let read_limits = keys::READ_HZ.limits(system_hz);
         let read_hz = || t.link.integer(&keys::READ_HZ, &read_limits);
-        let service = service::read(&t.service);
+        let service = service::read(&t.service, has_endat);
         let around = safety::Around {
             bus,
             has_endat,
@@ -263,7 +264,11 @@ impl<'s, 't> Written<'s, 't> {
             },
             service: self.service.unwrap_or_default(),
             line: self.line.unwrap_or_default(),
-            stream: self.stream.parts,
+            // A service that could not be read may have what the stream takes.
+            stream: StreamParts {
+                additional_data: self.stream.parts.additional_data && self.service.is_some(),
+                ..self.stream.parts
+            },
             outputs: self.outputs.unwrap_or_default(),
             safety: self.safety.unwrap_or_default(),
             initial_values: self.initial_values,
@@ -307,7 +312,7 @@ impl<'s, 't> Written<'s, 't> {
 /// Reads a whole file; complaints go to `source`, and `None` means that there was at least one.
 /// The card comes onto the board `other`, if there is one, instead of its own.
 pub fn read(source: &Source<'_>, other: Option<&Board>) -> Option<Project> {
-    let document = parse(source)?;
+    let document = parse(source, keys::KEYS)?;
     let empty = DeTable::new();
     let root = Table::root(source, &document);
     let name = read_name(&root);
@@ -393,7 +398,7 @@ fn read_bus(table: &Table<'_, '_>) -> Option<HostBus> {
     if bus.is_none() {
         let known: Vec<&str> = HostBus::ALL.map(HostBus::name).to_vec();
         let text = format!(
-            "unknown bus; use {}, or dsp for a T-format receiver",
+            "unknown bus; use {}, dsp (a T-format receiver)",
             known.join(", ")
         );
         table.complain(
@@ -420,40 +425,6 @@ fn refuse_unused<'a, 's: 'a, 't: 'a>(
             _ => format!("[{key}]: says which pins of a board the signals are on, and there is no board; add [board], or remove the table"),
         };
         table.complain_plain(text);
-    }
-}
-
-/// The board that is asked for, by name or by file; `other` takes its place.
-fn read_board(source: &Source<'_>, table: &Table<'_, '_>, other: Option<&Board>) -> Option<Board> {
-    if let Some(other) = other {
-        table.know(&[&keys::BOARD_NAME, &keys::BOARD_FILE]);
-        return Some(other.clone());
-    }
-    // Not asked for where it does not stand: nobody can guess a file.
-    table.know(&[&keys::BOARD_FILE]);
-    if table.has(keys::BOARD_FILE.name) {
-        let file = table.string(&keys::BOARD_FILE)?;
-        table.refuse(
-            &keys::BOARD_NAME,
-            "file names a board, too; remove one of the two",
-        );
-        let folder = Path::new(source.file).parent().unwrap_or(Path::new(""));
-        return match Board::from_file(&folder.join(&file.value)) {
-            Ok(board) => Some(board),
-            Err(wrong) => {
-                source.adopt(wrong);
-                None
-            }
-        };
-    }
-    let name = table.required_string(&keys::BOARD_NAME)?;
-    match Board::named(&name.value) {
-        Ok(board) => Some(board),
-        Err(text) => {
-            let shown = format!("{:?}", name.value);
-            table.complain(name.line, keys::BOARD_NAME.name, &shown, &text);
-            None
-        }
     }
 }
 

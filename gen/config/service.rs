@@ -6,7 +6,7 @@ use super::reader::{At, Table};
 use endat_hdl::config::{ServiceParts, LIST};
 
 /// Reads the table; everything in it may be left out. `None` if something is wrong.
-pub fn read(table: &Table<'_, '_>) -> Option<ServiceParts> {
+pub fn read(table: &Table<'_, '_>, has_endat: bool) -> Option<ServiceParts> {
     let infos = read_infos(table);
     let mut parts = ServiceParts::default();
     let named = read_parts(
@@ -22,7 +22,10 @@ pub fn read(table: &Table<'_, '_>) -> Option<ServiceParts> {
     check_leader(table, &SERVICE_PARTS, parts.requests, &named)?;
     let infos = infos?;
     if let (Some(first), false) = (infos.first(), parts.requests) {
-        let text = "a card without requests has no list of additional data; add \"requests\" to service.parts";
+        let text = match has_endat {
+            true => "a card without requests has no list of additional data; add \"requests\" to service.parts, or leave it out",
+            false => "takes a channel that speaks EnDat, and this card has none; leave it out",
+        };
         table.complain(
             first.line,
             INFOS.name,
@@ -51,7 +54,9 @@ fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
         let shown = format!("0x{:02X}", info.value);
         let text = match info.value {
             _ if index >= LIST => {
-                format!("more than {LIST} codes of additional data; leave some out")
+                format!(
+                    "more than {LIST} codes of additional data; keep {LIST}, leave the rest out"
+                )
             }
             code if infos[..index].iter().any(|i| i.value == code) => {
                 "stands twice; remove one".into()

@@ -11,7 +11,7 @@ use std::ops::Range;
 pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, GenError> {
     let text = preset_of(option, name)?;
     let source = Source::new(name, text);
-    let Some(document) = parse(&source) else {
+    let Some(document) = parse(&source, &[]) else {
         return Err(source.into_diagnostics().into());
     };
     let place = |table: &str, key: &str| -> Option<(Range<usize>, Range<usize>)> {

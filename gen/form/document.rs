@@ -1,22 +1,39 @@
 //! A file as TOML, and what is said if it is none.
 
+use super::key::{Key, Kind};
 use super::quantity;
 use super::reader::Source;
 use crate::error::shorten;
 use toml::de::DeTable;
 
-/// The file's top level; complaints go to `source`.
-pub fn parse<'t>(source: &Source<'t>) -> Option<DeTable<'t>> {
+/// The file's top level, of a form with these keys; complaints go to `source`.
+pub fn parse<'t>(source: &Source<'t>, keys: &[&Key]) -> Option<DeTable<'t>> {
     let (document, errors) = DeTable::parse_recoverable(source.text());
-    for error in &errors {
+    // Keys below a second head in single brackets do not stand there twice.
+    let is_single = |error: &toml::de::Error| {
         let line = error.span().map_or(0, |span| source.line(span.start));
-        source.complain_line(line, not_toml(source, error, line));
+        is_channel(source, line)
+    };
+    let has_single = errors.iter().any(is_single);
+    for error in errors.iter().filter(|e| !has_single || is_single(e)) {
+        let line = error.span().map_or(0, |span| source.line(span.start));
+        source.complain_line(line, not_toml(source, error, line, keys));
     }
     errors.is_empty().then(|| document.into_inner())
 }
 
+/// Whether a line is the head of a channel in single brackets.
+fn is_channel(source: &Source<'_>, line: usize) -> bool {
+    let written = source.text().lines().nth(line.saturating_sub(1));
+    written.is_some_and(|l| l.trim_start().starts_with("[channel]"))
+}
+
 /// What the parser says about a line, and what to do about the usual mistakes.
-fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String {
+fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize, keys: &[&Key]) -> String {
+    let is_text = |name: &str| {
+        let mut keys = keys.iter();
+        keys.any(|key| key.name == name && key.kind == Kind::Text)
+    };
     let message = error.message().replace('\n', ", ");
     let written = source.text().lines().nth(line.saturating_sub(1));
     let (key, value) = written.and_then(|l| l.split_once('=')).unwrap_or_default();
@@ -24,17 +41,15 @@ fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String
     let digits = value.len() > 1 && value.chars().all(|c| c.is_ascii_digit() || c == '_');
     let with_unit = quantity::remedy(key.trim(), value);
     let remedy = match () {
-        () if digits && value.starts_with('0') && key.trim() == "command" => {
-            format!("put it in quotes: command = \"{value}\"")
+        () if digits && value.starts_with('0') && is_text(key.trim()) => {
+            format!("put it in quotes: {} = \"{value}\"", key.trim())
         }
         () if digits && value.starts_with('0') => {
             let number = value.trim_start_matches(['0', '_']);
             let number = if number.is_empty() { "0" } else { number };
             format!("leave the first 0 out: {} = {number}", key.trim())
         }
-        () if written.is_some_and(|l| l.trim_start().starts_with("[channel]")) => {
-            "there is one for each channel: write [[channel]]".into()
-        }
+        () if is_channel(source, line) => "write [[channel]], one for each".into(),
         () if message.contains("duplicate key") => {
             let span = error.span().and_then(|span| source.text().get(span));
             format!("{} stands twice, remove one", span.unwrap_or(key).trim())

@@ -1,11 +1,12 @@
 //! Forms: TOML files that people fill in, read as a whole, with every complaint at its line.
 
-pub(crate) mod asked;
+pub mod asked;
 pub(crate) mod document;
 mod free;
 pub mod key;
 mod quantity;
 pub(crate) mod reader;
+mod strays;
 
 use crate::artifact::read_regular;
 use crate::error::{Diagnostic, GenError};

@@ -3,11 +3,10 @@
 //! `serde` stops at the first problem; a configuration is a form, and a form is checked as a whole.
 
 use super::asked::{Asked, Kind};
-use super::key::{head, Key};
+use super::key::Key;
 use super::quantity;
 use crate::error::{shorten, Diagnostic};
 use endat_hdl::config::Limits;
-use endat_host::did_you_mean::guess;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -20,19 +19,23 @@ pub struct Source<'t> {
     /// File as the user named it.
     pub file: &'t str,
     text: &'t str,
-    diagnostics: RefCell<Vec<Diagnostic>>,
-    asked: RefCell<Vec<Asked>>,
-    strays: RefCell<Vec<Stray>>,
+    pub(super) diagnostics: RefCell<Vec<Diagnostic>>,
+    pub(super) asked: RefCell<Vec<Asked>>,
+    pub(super) strays: RefCell<Vec<Stray>>,
 }
 
 /// A key that its table has not.
-struct Stray {
-    line: usize,
-    key: String,
+pub(super) struct Stray {
+    pub(super) line: usize,
+    pub(super) key: String,
     /// With its table.
-    name: String,
-    /// Keys of its table.
-    known: Vec<&'static str>,
+    pub(super) name: String,
+    /// Keys that its table may have.
+    pub(super) known: Vec<&'static str>,
+    /// The other keys that stand in it.
+    pub(super) written: Vec<String>,
+    /// It is the heading of a table.
+    pub(super) is_table: bool,
 }
 
 impl<'t> Source<'t> {
@@ -87,56 +90,6 @@ impl<'t> Source<'t> {
     pub fn into_asked(self) -> (Vec<Asked>, Vec<Diagnostic>) {
         let asked = self.asked.borrow().clone();
         (asked, self.into_diagnostics())
-    }
-
-    /// All complaints, in the order of the lines.
-    pub fn into_diagnostics(self) -> Vec<Diagnostic> {
-        // Only now all tables have been read: a key may belong to another one.
-        let strays = self.strays.take();
-        // Keys below a misspelt heading are not missing.
-        let is_heading = |stray: &Stray| {
-            stray.name == stray.key && guess(&stray.key, stray.known.iter().copied()).is_some()
-        };
-        if strays.iter().any(is_heading) {
-            let mut all = self.diagnostics.borrow_mut();
-            all.retain(|d| d.line > 0 || !d.text.contains(": is missing; "));
-        }
-        for stray in strays {
-            let text = self.stray(&stray);
-            self.complain_line(stray.line, text);
-        }
-        let mut all = self.diagnostics.into_inner();
-        all.sort_by_key(|d| d.line);
-        let mut seen = BTreeSet::new();
-        all.retain(|d| seen.insert((d.line, d.text.clone())));
-        all
-    }
-
-    /// What is said of such a key: what it may have been meant to be, or where it belongs.
-    fn stray(&self, stray: &Stray) -> String {
-        let Stray { key, known, .. } = stray;
-        let asked = self.asked.borrow();
-        let homes = asked.iter().filter(|a| a.key == key);
-        let homes: BTreeSet<&str> = homes
-            .map(|a| a.table.split('[').next().unwrap_or_default())
-            .collect();
-        let hint = match guess(key, known.iter().copied()) {
-            Some(near) => near,
-            None if !homes.is_empty() => {
-                let homes: Vec<String> = homes.into_iter().map(home).collect();
-                format!("it belongs {}", homes.join(" or "))
-            }
-            None => format!("known keys here: {}", known.join(", ")),
-        };
-        format!("{}: unknown key; {hint}", shorten(&stray.name))
-    }
-}
-
-/// Where a key of this table stands.
-fn home(table: &str) -> String {
-    match table {
-        "" => "to the top of the file, above all tables".into(),
-        table => format!("to {}", head(table)),
     }
 }
 
@@ -241,6 +194,11 @@ impl<'s, 't> Table<'s, 't> {
 
     /// An integer, if the key is there; `limits` are told when it is negative or beyond every number of hardware.
     pub fn integer(&self, key: &'static Key, limits: &Limits) -> Option<At<u64>> {
+        self.integer_or(key, limits, limits)
+    }
+
+    /// The same, where other limits are told.
+    pub fn integer_or(&self, key: &'static Key, limits: &Limits, told: &Limits) -> Option<At<u64>> {
         self.ask(key, Kind::Integer(limits.clone()));
         let key = key.name;
         let spanned = self.get(key)?;
@@ -259,7 +217,7 @@ impl<'s, 't> Table<'s, 't> {
             }
             _ => {
                 let (name, value) = (self.name(key), self.excerpt(&spanned.span()));
-                let text = format!("{name} = {value}: {limits}");
+                let text = format!("{name} = {value}: {told}");
                 self.source.complain(&spanned.span(), text);
                 None
             }
@@ -430,6 +388,11 @@ impl<'s, 't> Table<'s, 't> {
         self.table.get(key).is_some()
     }
 
+    /// The text below a key, which is not asked for with that.
+    pub fn peek(&self, key: &str) -> Option<&str> {
+        self.table.get(key)?.get_ref().as_str()
+    }
+
     /// Takes these keys as asked for.
     pub fn know(&self, keys: &[&'static Key]) {
         self.known.borrow_mut().extend(keys.iter().map(|k| k.name));
@@ -469,15 +432,22 @@ impl<'s, 't> Table<'s, 't> {
     /// Complains about every key that nothing has asked for.
     pub fn finish(&self) {
         let known = self.known.borrow();
-        for key in self.table.keys() {
+        for (key, value) in self.table.iter() {
             if known.contains(key.get_ref().as_ref()) {
                 continue;
             }
             self.source.strays.borrow_mut().push(Stray {
                 line: self.source.line(key.span().start),
+                is_table: value.get_ref().is_table() || value.get_ref().is_array(),
                 key: key.get_ref().to_string(),
                 name: self.name(key.get_ref()),
                 known: known.iter().copied().collect(),
+                written: self
+                    .table
+                    .keys()
+                    .map(|k| k.get_ref().to_string())
+                    .filter(|k| *k != *key.get_ref())
+                    .collect(),
             });
         }
     }

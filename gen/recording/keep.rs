@@ -38,7 +38,7 @@ impl Faults {
             None => {
                 let near = closest(name, known.iter().copied(), |n| n);
                 let remedy = match near[..] {
-                    [] => format!("causes are {}", known.join(", ")),
+                    [] => format!("use one of {}", known.join(", ")),
                     _ => format!("did you mean {}?", near.join(" or ")),
                 };
                 let text = format!(

@@ -4,6 +4,7 @@ use super::*;
 use crate::card::stream::buffer::{frame_bytes, frame_cycles, BUFFER_BYTES};
 use crate::endat::timing::*;
 use crate::protocol::LEAD_PULSES;
+use crate::protocols::Spoken;
 use endat_regs::result_words;
 
 /// Where the upper limit of the UART rate comes from when it is not the system clock.
@@ -243,10 +244,17 @@ impl CardDraft {
         let ppm = deviation_ppm(system_hz as f64 / bit_cycles as f64, baud as f64);
         if ppm.abs() > UART_TOLERANCE_PPM as f64 {
             let nearest = (system_hz + bit_cycles / 2) / bit_cycles;
+            // Nothing is proposed that would be refused itself.
+            let slower = (system_hz + bit_cycles.div_ceil(2)) / (bit_cycles + 1);
+            let good = [nearest, slower];
+            let good = good.into_iter().find(|hz| baud_limits.contains(*hz));
+            let remedy = good.map_or("use another system clock".into(), |hz| {
+                format!("use {hz} bit/s")
+            });
             check.fail(
                 "baud",
                 baud,
-                format!("would become {nearest} bit/s ({ppm:+.0} ppm), more than the allowed {UART_TOLERANCE_PPM} ppm; use a rate that divides clock.system_hz = {system_hz}"),
+                format!("would become {nearest} bit/s ({ppm:+.0} ppm), more than the allowed {UART_TOLERANCE_PPM} ppm with clock.system_hz = {system_hz}; {remedy}"),
             );
         }
         if let (Some(read_hz), Some(channels)) = (read_hz, channels) {
@@ -254,11 +262,22 @@ impl CardDraft {
             let needed = needed_baud(read_hz, channels, requests);
             if needed > baud {
                 let most = baud / needed_baud(1, channels, requests);
-                check.fail(
-                    "baud",
-                    baud,
-                    format!("the link is too slow: reading {} bytes {read_hz} times a second takes {needed} bit/s; raise baud, or set link.read_hz to {most} or less", read_bytes(channels, requests)),
+                let mut remedies = Vec::new();
+                if let Some(faster) = baud_from(needed, system_hz, &baud_limits) {
+                    remedies.push(format!("raise it to {faster}"));
+                }
+                if most > 0 {
+                    remedies.push(format!("set link.read_hz to {most} or less"));
+                }
+                if remedies.is_empty() {
+                    remedies.push("use another system clock".into());
+                }
+                let text = format!(
+                    "the link is too slow: reading {} bytes {read_hz} times a second takes {needed} bit/s; {}",
+                    read_bytes(channels, requests),
+                    remedies.join(", or ")
                 );
+                check.fail("baud", baud, text);
             }
         }
         Some(bit_cycles)
@@ -279,7 +298,13 @@ impl CardDraft {
             problems,
         };
         if self.stream.additional_data && !self.service.requests {
-            let text = "a card without requests has no additional data; add \"requests\" to service.parts, or set stream.additional_data = false";
+            let mut channels = self.channels.iter().flatten();
+            let is_endat =
+                |c: &Option<ChannelSpec>| c.as_ref().is_none_or(|c| c.spoken == Spoken::Endat);
+            let text = match channels.any(is_endat) {
+                true => "a card without requests has no additional data; add \"requests\" to service.parts, or set stream.additional_data = false",
+                false => "no channel of this card speaks EnDat; set stream.additional_data = false",
+            };
             check.fail("additional_data", true, text.into());
         }
         if self.stream.additional_data && bytes == 0 {
@@ -317,12 +342,18 @@ impl CardDraft {
         let needed = stream_baud(sample_hz, channels, additional_data);
         if needed > baud && !self.without_uart {
             let most = baud / stream_baud(1, channels, additional_data);
+            let baud_limits = limits("baud", Some(system_hz));
+            let baud_limits = baud_limits.at_most(self.baud_max.unwrap_or(u64::MAX), BAUD_NOTE);
+            // Nothing is proposed that would be refused itself.
+            let faster = baud_from(needed, system_hz, &baud_limits);
+            let is_rate = limits("sample_hz", Some(system_hz)).contains(most);
+            let mut remedies = Vec::new();
+            remedies.extend(is_rate.then(|| format!("lower it to {most} or less, ")));
+            remedies.extend(faster.map(|hz| format!("raise link.baud to {hz}, ")));
+            let or = if remedies.is_empty() { "" } else { "or " };
+            let text = format!("the stream does not fit: {sample_hz} sets a second of {frame} bytes take {needed} bit/s, link.baud is {baud}; {}{or}set stream.fifo_bytes = 0", remedies.concat());
             check.section = Section::Trigger;
-            check.fail(
-                "sample_hz",
-                sample_hz,
-                format!("the stream does not fit: {sample_hz} sets a second of {frame} bytes take {needed} bit/s, link.baud is {baud}; lower it to {most} or less, raise link.baud to {needed}, or set stream.fifo_bytes = 0"),
-            );
+            check.fail("sample_hz", sample_hz, text);
         }
         let cycles = frame_cycles(channels, additional_data);
         if sample_hz.saturating_mul(cycles) > system_hz {
@@ -384,15 +415,15 @@ pub(crate) fn frame_too_long(index: usize, channel: &ChannelConfig, times: TooLo
     ];
     shares.sort_by_key(|(cycles, ..)| std::cmp::Reverse(*cycles));
     let (_, _, key, value) = shares[0];
+    let highest = times.highest_hz();
     let remedies: Vec<&str> = shares
         .iter()
         .filter(|(cycles, ..)| *cycles > 0)
         .map(|(_, remedy, ..)| *remedy)
         .collect();
     format!(
-        "a frame of channel {index} with its recovery time takes up to {} us, the largest part from {key} = {value}, so at most {} Hz; lower it, or {}",
+        "a frame of channel {index} with its recovery time takes up to {} us, the largest part from {key} = {value}, so at most {highest} Hz; lower it to {highest}, or make the frame shorter: {}",
         microseconds(times.cycles, system_hz),
-        times.highest_hz(),
         remedies.join(", or ")
     )
 }
@@ -434,6 +465,16 @@ impl CardConfig {
     pub fn highest_read_hz(&self) -> f64 {
         self.actual_baud() / needed_baud(1, self.channels.len(), self.service.requests) as f64
     }
+}
+
+/// The slowest rate of a UART that is at least this fast, and that a system clock makes; none within its limits.
+fn baud_from(needed: u64, system_hz: u64, limits: &Limits) -> Option<u64> {
+    let cycles = system_hz / needed.max(1);
+    let made = |cycles: u64| (cycles > 0).then(|| system_hz / cycles);
+    let good = |hz: &u64| *hz >= needed && limits.contains(*hz);
+    [cycles, cycles.saturating_sub(1)]
+        .into_iter()
+        .find_map(|c| made(c).filter(good))
 }
 
 /// Bytes on the line when a host reads the results of all channels in one burst: request, then every word from the

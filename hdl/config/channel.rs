@@ -193,8 +193,8 @@ fn check_calibration(check: &mut Check<'_>, request: &ChannelSpec, system_hz: u6
     }
     if hz > request.clock_hz {
         let text = format!(
-            "above clock_hz = {}; the delay is measured at the clock of the other frames or a slower one, lower it",
-            request.clock_hz
+            "above clock_hz = {}, and the delay is measured at the clock of the other frames or a slower one; lower it to {}",
+            request.clock_hz, request.clock_hz
         );
         check.fail("calibration_hz", hz, text);
         return false;
@@ -218,18 +218,25 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec, most_ns: u64) {
             true if may_be_short => (
                 "recovery_max_ns",
                 high,
-                format!("below recovery_min_ns = {low}; add recovery_min_ns = {SHORT_RECOVERY_MIN_NS}, if the encoder is set to short"),
+                format!("below recovery_min_ns = {low}; use at least {low}, or add recovery_min_ns = {SHORT_RECOVERY_MIN_NS}, if the encoder is set to short"),
             ),
             true => (
                 "recovery_max_ns",
                 high,
                 format!("{condition}; use at least {RECOVERY_MIN_NS}"),
             ),
-            false => (
-                "recovery_min_ns",
-                low,
-                format!("above recovery_max_ns = {high}; lower it, or raise recovery_max_ns"),
-            ),
+            false => {
+                // Nothing is proposed that would be refused itself.
+                let lower = match high < RECOVERY_MIN_NS && !may_be_short {
+                    true => String::new(),
+                    false => format!("lower it to {high}, or "),
+                };
+                (
+                    "recovery_min_ns",
+                    low,
+                    format!("above recovery_max_ns = {high}; {lower}raise recovery_max_ns to {low}"),
+                )
+            }
         };
         check.fail(key, value, text);
     }
@@ -343,7 +350,7 @@ pub(crate) fn check_tst(
     };
     if extra > max_of(PERIOD_BITS) {
         let most_ns = cycles_to_ns(max_of(PERIOD_BITS) + half, system_hz);
-        check.fail("tst_ns", tst, format!("more than {most_ns} ns, the longest the counter can time at this system clock; lower it"));
+        check.fail("tst_ns", tst, format!("more than {most_ns} ns, the longest the counter can time at this system clock; lower it to {most_ns}"));
     }
     extra
 }

@@ -116,6 +116,19 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
     }
 }
 
+/// What a key may be beside every cable, clock and other key that there may be.
+pub fn narrowest(key: &str, system_hz: Option<u64>) -> Limits {
+    let slow = system_hz.unwrap_or(SYSTEM_HZ_MAX);
+    let whole = limits(key, system_hz);
+    match key {
+        "tcal_max_ns" => whole.at_most(tcal_most_ns(ENDAT_HZ_MIN, CABLE_M_MAX), ""),
+        "recovery_min_ns" | "recovery_max_ns" => {
+            whole.at_most(recovery_most_ns(slow, CABLE_M_MAX), "")
+        }
+        _ => whole,
+    }
+}
+
 /// Longest calculation time whose wait for the start bit can still be timed, also in the calibration frame.
 pub(super) fn tcal_most_ns(slowest_hz: u64, cable_m: u64) -> u64 {
     let wait_ns = 1_000 * (max_of(START_TIMEOUT_BITS) - 1);

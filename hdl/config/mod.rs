@@ -18,7 +18,7 @@ pub(crate) use card::{frame_too_long, microseconds, TooLong};
 pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
 pub(crate) use channel::{check_clock, check_filter, check_tst, is_uneven};
 pub(crate) use limits::recovery_most_ns;
-pub use limits::{clock_limits, limits, Limits};
+pub use limits::{clock_limits, limits, narrowest, Limits};
 pub use parts::{
     LineParts, OutputParts, PhaseSource, SafetyParts, ServiceParts, StreamParts, StreamStart,
     ERROR_TEST_MS,
@@ -426,7 +426,7 @@ pub const fn filter_longest(places: u64) -> u64 {
 }
 
 /// Largest number in `bits` bits.
-const fn max_of(bits: u32) -> u64 {
+pub(crate) const fn max_of(bits: u32) -> u64 {
     (1 << bits) - 1
 }
 

@@ -250,12 +250,12 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
         (|c| c.channels[1].tcal_max_ns = 0, "tcal_max_ns", "outside 1..4082800"),
         (|c| c.channels[1].cable_m = 781, "cable_m", "outside 0..780"),
         (|c| c.channels[1].recovery_min_ns = 1_249, "recovery_min_ns", "outside 1250..80390"),
-        (|c| c.channels[1].recovery_min_ns = 30_001, "recovery_min_ns", "above recovery_max_ns = 30000; lower it, or raise recovery_max_ns"),
+        (|c| c.channels[1].recovery_min_ns = 30_001, "recovery_min_ns", "above recovery_max_ns = 30000; lower it to 30000, or raise recovery_max_ns to 30001"),
         (|c| { c.channels[1].recovery_max_ns = 80_391; c.sample_hz = 1_000 }, "recovery_max_ns", "outside 1250..80390"),
         (|c| c.sample_hz = 20_382, "sample_hz", "so at most 20379 Hz"),
         (|c| c.sample_hz = 5, "sample_hz", "outside 6..1000000"),
         (|c| c.baud = 7_000_000, "baud", "would become 7142857 bit/s (+20408 ppm)"),
-        (|c| c.read_hz = 10_000, "baud", "takes 6200000 bit/s; raise baud, or set link.read_hz to 3225 or less"),
+        (|c| c.read_hz = 10_000, "baud", "takes 6200000 bit/s; raise it to 6250000, or set link.read_hz to 3225 or less"),
     ];
     for (change, key, text) in cases {
         let problem = problem(change);

@@ -51,7 +51,7 @@ fn wrong_board_files_are_refused_with_line_and_remedy() {
         (TANG_NANO, "supply_mv = 1_800", "supply_mv = 18", "banks.3.supply_mv = 18: outside 1000..3300; choose a value in that range"),
         (TANG_NANO, "supply_mv = 1_800", "supply_mv = 1_850", "banks.3.supply_mv = 1850: no I/O standard of Gowin GW1NR is for that; write one of: 1200, 1500, 1800, 2500, 3300"),
         (TANG_NANO, "supply_mv = 1_800", "supply = 1_800", "banks.3.supply: unknown key; did you mean supply_mv?"),
-        (TANG_NANO, "[banks.3]\n", "[banks]\n3 = 1_800\n[device2]\n", "banks.3 = 1_800: is an integer, must be a table headed [banks.3]"),
+        (TANG_NANO, "[banks.3]\n", "[banks]\n3 = 1_800\n[elsewhere]\n", "banks.3 = 1_800: is an integer, must be a table headed [banks.3]"),
         (TANG_NANO, "iostandard = \"LVCMOS33\"", "iostandard = \"LVCMOS34\"", "iostandard = \"LVCMOS34\": Gowin GW1NR has no such standard; write one of its: LVCMOS12, LVCMOS15, LVCMOS18, LVCMOS25, LVCMOS33, LVTTL33"),
         (TANG_NANO, "11 = \"LVCMOS18\"", "11 = \"lvcmos18\"", "iostandards.11 = \"lvcmos18\": Gowin GW1NR has no such standard; write one of its: LVCMOS12"),
         // keys and families

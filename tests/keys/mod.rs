@@ -1,9 +1,12 @@
 //! The table of keys: what the reader asks for, the pages, the schemas and `explain` are one, and JSON Schema's own validator says so.
 
+#[path = "bases.rs"]
+mod bases;
 mod validator;
 
 use crate::program::{bad, good, run, Dir};
 use crate::tools;
+use bases::BASES;
 use endat_gen::board::{self, BOARD_KEYS};
 use endat_gen::campaign::configurations::valid;
 use endat_gen::config::keys::{self, Key, Kind, Usual, CHANNELS, KEYS};
@@ -12,34 +15,6 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Cards and a receiver that have every key between them, and what is left of a card without any table that may be missing.
-const BASES: [&str; 7] = [
-    // Whatever a card with a UART may have.
-    "name = \"whole\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\ncalibration_hz = 300_000\ntst_ns = 2_000\n\
-     filter_ns = 20\nstart_window_ns = 60\ntcal_max_ns = 6_000\nrecovery_min_ns = 12_000\nrecovery_max_ns = 20_000\ncable_m = 30\n\
-     [[channel]]\nencoder = \"one\"\nprotocol = \"endat\"\nposition_bits = 25\ncommand = \"111000\"\nenabled = false\ndivider = 2\n\
-     sources = [\"pin\"]\n[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n[trigger]\nsample_hz = 100\nsources = [\"timer\"]\n\
-     [link]\nbaud = 2_000_000\nread_hz = 50\n[host]\nbus = \"uart\"\n[service]\nparts = [\"requests\", \"diagnosis\", \"continuous\"]\n\
-     infos = [0x4C]\n[line]\nparts = [\"alignment\", \"margin\"]\nphase = \"frame\"\nfixed_delay_ns = 400\ndrift_limit_ns = 40\nsamples = 3\n\
-     [outputs]\nparts = []\n[safety]\nparts = [\"second_interface\", \"error_test\"]\nerror_test_ms = 50\n\
-     [stream]\nfifo_bytes = 1024\nstart = \"push\"\nadditional_data = true\n[device]\ninitial_values = true\n[board]\nname = \"papilio_pro\"\n\
-     [pins]\ntrigger_i = \"A0\"\n",
-    "name = \"base\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
-     command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\nbase_address = 0x2000\n[outputs]\n\
-     parts = [\"position\", \"interrupt\"]\n",
-    "name = \"outside\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\nlinear = false\n\
-     command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"spi\"\nsck_hz = 1_000_000\n",
-    "name = \"other\"\n[clock]\nsystem_hz = 100_000_000\n[[channel]]\nprotocol = \"t_format\"\nbit_hz = 5_000_000\nrequest = 0\n\
-     reply_gap_us = 30\nfield_gap_us = 3\nfilter_ns = 20\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
-    "name = \"serial\"\n[clock]\nsystem_hz = 100_000_000\n[[channel]]\nprotocol = \"ssi\"\nposition_bits = 25\nclock_hz = 500_000\n\
-     single_turn_bits = 25\nmulti_turn_bits = 0\n\
-     code = \"gray\"\nparity = \"odd\"\ntwice = true\nbit_delay_ns = 300\ntst_ns = 2_000\nfilter_ns = 20\nrecovery_min_ns = 12_000\nrecovery_max_ns = 20_000\ncable_m = 20\n\
-     bits_before = [\"ignored\"]\nbits_after = [\"alarm\"]\nend_low = true\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
-    "name = \"receiver\"\n[host]\nbus = \"dsp\"\n[[channel]]\nprotocol = \"t_format\"\nencoder = \"one\"\nbit_hz = 2_500_000\n\
-     request = 6\nreply_gap_us = 30\nfield_gap_us = 3\nfilter_cycles = 2\n[device]\ninitial_values = false\n",
-    "name = \"least\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
-     command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"axi_lite\"\n[service]\n[line]\n[outputs]\n[safety]\n[stream]\n",
-];
 fn bases() -> Vec<Table> {
     BASES.map(|text| text.parse().unwrap()).into()
 }

@@ -103,7 +103,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "sample_hz = 5_000 ",
             "sample_hz = 9_000 ",
-            "a frame of SSI channel 1 takes up to 137.32 us with the recovery time, so at most 7282 Hz; lower it, raise clock_hz = 500000, leave twice out, or shorten recovery_max_ns = 25000 if the data sheet allows it",
+            "a frame of SSI channel 1 takes up to 137.32 us with the recovery time, so at most 7282 Hz; lower it to 7282, or make the frame shorter: raise clock_hz = 500000, leave twice out, or shorten recovery_max_ns = 25000 if the data sheet allows it",
         ),
     ] {
         let told = complaint(&changed(from, to));

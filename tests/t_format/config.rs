@@ -85,7 +85,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "[[channel]]",
             "[[chanel]]",
-            "[[channel]]: is missing; add one table with protocol = \"t_format\"",
+            ":10: chanel: unknown key; did you mean channel?",
         ),
     ];
     for (from, to, expected) in rows {

@@ -44,7 +44,7 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
     let open = || {
         Ports::open(host, control, data).map_err(|e| {
             GenError::input(format!(
-                "--host = {host}, ports {control} and {data}: {e}; give other ones with --control-port and --data-port"
+                "--host = {host}, ports {control} and {data}: {e}; give an address of this machine with --host, or other ports with --control-port and --data-port"
             ))
         })
     };

@@ -131,6 +131,8 @@ fn in_options(text: &str) -> String {
     let Some((what, remedy)) = text.rsplit_once("; ") else {
         return text.to_owned();
     };
+    // There is no option for it.
+    let remedy = remedy.split(", or write file = ").next().unwrap_or(remedy);
     let named = |word: &str| {
         let question = QUESTIONS.iter().find(|q| match q.of {
             Of::Key(key, _) => key.name == word && q.name.replace('-', "_") == word,

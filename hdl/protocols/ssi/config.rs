@@ -4,9 +4,9 @@ use super::asked::SsiSpec;
 use super::protocol::{bit_delay_most_ns, CLOCK_HZ_MIN, LATENCY_CYCLES, PERIOD_CYCLES_MIN};
 use super::specials::{Places, Special, SHOWN_MAX, SPECIALS_MAX};
 use crate::config::{
-    check_clock, check_filter, check_tst, is_uneven, limits, microseconds, recovery_most_ns,
-    ChannelConfig, ChannelSpec, Check, Limits, TooLong, CABLE_M_MAX, DELAY_NS_PER_M,
-    INPUT_LATENCY_CYCLES,
+    check_clock, check_filter, check_tst, is_uneven, limits, max_of, microseconds,
+    recovery_most_ns, ChannelConfig, ChannelSpec, Check, Limits, TooLong, CABLE_M_MAX,
+    DELAY_NS_PER_M, FILTER_BITS, INPUT_LATENCY_CYCLES,
 };
 use crate::endat::timing::{cycles_at_least, cycles_at_most, cycles_to_ns, ENDAT_HZ_MAX};
 use crate::protocols::Spoken;
@@ -50,11 +50,14 @@ impl SsiSpec {
         let period = check_clock(check, request.clock_hz, system_hz, None)?;
         let half = period / 2;
         let filter_cycles = check_filter(check, request, half, 1, system_hz, "a clock period");
-        self.check_bit_delay(check, request, [period, filter_cycles], system_hz);
+        // One that is too long has its complaint, and must not narrow what else may be.
+        let counted = filter_cycles.min(half).min(max_of(FILTER_BITS));
+        self.check_bit_delay(check, request, [period, counted], system_hz);
         self.check_specials(check);
+        let needed = self.needed_cycles(request, counted, system_hz);
         match self.holds_end {
             true => self.check_held_end(check),
-            false => check_recovery_low(check, request, period, system_hz),
+            false => check_recovery_low(check, request, [period, needed], system_hz),
         }
         check_recovery(check, request);
         Some(ChannelConfig {
@@ -119,6 +122,17 @@ impl SsiSpec {
         }
     }
 
+    /// The shortest period that a bit fits into.
+    fn needed_cycles(&self, request: &ChannelSpec, filter_cycles: u64, system_hz: u64) -> u64 {
+        let needed_ns = self.bit_delay_ns + cable_ns(request);
+        let needed = cycles_at_least(needed_ns, system_hz) + LATENCY_CYCLES + filter_cycles;
+        let mut cycles = needed.max(PERIOD_CYCLES_MIN);
+        while is_uneven(cycles) {
+            cycles += 1;
+        }
+        cycles
+    }
+
     /// A bit must be there before the next one is asked for.
     fn check_bit_delay(
         &self,
@@ -133,11 +147,7 @@ impl SsiSpec {
             return;
         }
         let input_cycles = LATENCY_CYCLES + filter_cycles;
-        let needed = cycles_at_least(own_ns + cable_ns, system_hz) + input_cycles;
-        let mut cycles = needed.max(PERIOD_CYCLES_MIN);
-        while is_uneven(cycles) {
-            cycles += 1;
-        }
+        let cycles = self.needed_cycles(request, filter_cycles, system_hz);
         // Nothing is proposed that would be refused itself.
         let mut remedies = Vec::new();
         if system_hz / cycles >= CLOCK_HZ_MIN {
@@ -151,9 +161,12 @@ impl SsiSpec {
                 "lower bit_delay_ns to {left_ns}, if that is the encoder's"
             ));
         }
-        let remedy = match remedies.is_empty() {
-            true => "lower bit_delay_ns and cable_m".into(),
-            false => remedies.join(", or "),
+        let remedy = match (remedies.is_empty(), most_ns) {
+            (false, _) => remedies.join(", or "),
+            (true, 0) => format!(
+                "no period with clock.system_hz = {system_hz} holds both; use a faster system clock"
+            ),
+            (true, _) => "lower bit_delay_ns and cable_m".into(),
         };
         let text = format!(
             "a bit takes up to {} ns of a period from its clock edge ({own_ns} ns in the encoder, the rest in {} m of cable), and the input {input_cycles} cycles; {remedy}",
@@ -165,14 +178,14 @@ impl SsiSpec {
 
     /// Why a trigger would come before the channel is ready, and the remedy.
     pub(crate) fn too_long(&self, index: usize, channel: &ChannelConfig, times: TooLong) -> String {
+        let highest = times.highest_hz();
         let twice = match self.twice {
             true => ", leave twice out",
             false => "",
         };
         format!(
-            "a frame of SSI channel {index} takes up to {} us with the recovery time, so at most {} Hz; lower it, raise clock_hz = {}{twice}, or shorten recovery_max_ns = {} if the data sheet allows it",
+            "a frame of SSI channel {index} takes up to {} us with the recovery time, so at most {highest} Hz; lower it to {highest}, or make the frame shorter: raise clock_hz = {}{twice}, or shorten recovery_max_ns = {} if the data sheet allows it",
             microseconds(times.cycles, times.system_hz),
-            times.highest_hz(),
             channel.spec.clock_hz,
             channel.spec.recovery_max_ns
         )
@@ -191,7 +204,12 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec) {
 }
 
 /// The LOW behind the last bit must still be there where it is looked at: a period behind the last rising edge.
-fn check_recovery_low(check: &mut Check<'_>, request: &ChannelSpec, period: u64, system_hz: u64) {
+fn check_recovery_low(
+    check: &mut Check<'_>,
+    request: &ChannelSpec,
+    [period, needed]: [u64; 2],
+    system_hz: u64,
+) {
     let (least_ns, most_ns) = (request.recovery_min_ns, request.recovery_max_ns);
     if least_ns > most_ns {
         return;
@@ -202,7 +220,10 @@ fn check_recovery_low(check: &mut Check<'_>, request: &ChannelSpec, period: u64,
         // Three halves of an even period.
         let longest = cycles_at_most(least_ns, system_hz) / 3 * 2;
         let clock = match longest {
-            PERIOD_CYCLES_MIN.. => format!("use at least {} Hz, or ", system_hz.div_ceil(longest)),
+            // Nothing is proposed that would be refused itself.
+            PERIOD_CYCLES_MIN.. if longest >= needed => {
+                format!("use at least {} Hz, or ", system_hz.div_ceil(longest))
+            }
             _ => String::new(),
         };
         let raised = match end_ns > most_ns {

@@ -93,10 +93,10 @@ impl TFormatSpec {
 
     /// Why a trigger would come before the channel is ready, and the remedy.
     pub(crate) fn too_long(&self, index: usize, _: &ChannelConfig, times: TooLong) -> String {
+        let highest = times.highest_hz();
         format!(
-            "an exchange of T-format channel {index} takes up to {} us with its pauses, so at most {} Hz; lower it, or lower reply_gap_us = {} and field_gap_us = {}, or ask for less with request = 0",
+            "an exchange of T-format channel {index} takes up to {} us with its pauses, so at most {highest} Hz; lower it to {highest}, or make the exchange shorter: lower reply_gap_us = {} and field_gap_us = {}, or ask for less with request = 0",
             microseconds(times.cycles, times.system_hz),
-            times.highest_hz(),
             self.reply_gap_us,
             self.field_gap_us
         )

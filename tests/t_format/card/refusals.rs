@@ -29,7 +29,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         ("filter_ns = 50", "filter_ns = 160", "channel[1].filter_ns = 160: is 16 cycles, more than 15 (half a bit, and 15 at most); use 150 ns or less"),
         ("system_hz = 100_000_000", "system_hz = 16_000_000", "channel[1].bit_hz = 2500000: has 6 cycles of clock.system_hz = 16000000 in a bit, 8 are needed; use a system clock of at least 20000000 Hz"),
         ("system_hz = 100_000_000", "system_hz = 32_000_000", "channel[1].bit_hz = 2500000: would become 2461538 bit/s (-15385 ppm), more than the allowed 10000 ppm; use a multiple of 2500000 Hz for clock.system_hz, for example 32500000"),
-        ("sample_hz = 10_000", "sample_hz = 11_000", "an exchange of T-format channel 1 takes up to 91.4 us with its pauses, so at most 10940 Hz; lower it, or lower reply_gap_us = 20"),
+        ("sample_hz = 10_000", "sample_hz = 11_000", "an exchange of T-format channel 1 takes up to 91.4 us with its pauses, so at most 10940 Hz; lower it to 10940, or make the exchange shorter: lower reply_gap_us = 20"),
     ];
     for (from, to, expected) in rows {
         assert!(text.contains(from), "{from}");
