@@ -42,7 +42,3 @@ mod t_format {
         mod refusals;
     }
 }
-
-#[allow(dead_code)] // the tests of hosts/ take the rest
-#[path = "hosts/desk.rs"]
-mod desk;
