@@ -18,7 +18,7 @@ enum Said {
 pub struct Ranges([Option<Said>; CHANNELS_MAX]);
 
 /// How it is written.
-const FORM: &str = "write CHANNEL=SINGLE+MULTI, as in 0=17+16 for 17 bits of angle and 16 that count turns (0=17 for none), or CHANNEL=linear";
+const FORM: &str = "is no range; give bits of the angle and bits that count turns, for example 0=17+16 for channel 0, or 0=linear";
 
 /// Why something of a channel is refused.
 pub fn unknown(channel: usize) -> String {
@@ -176,9 +176,9 @@ mod tests {
     #[test]
     fn what_is_no_range_is_refused_with_its_form() {
         for (text, told) in [
-            ("17+16", "write CHANNEL=SINGLE+MULTI"),
-            ("0=", "write CHANNEL=SINGLE+MULTI"),
-            ("0=17+x", "write CHANNEL=SINGLE+MULTI"),
+            ("17+16", "is no range; give bits"),
+            ("0=", "is no range; give bits"),
+            ("0=17+x", "is no range; give bits"),
             ("0=0+16", "an angle 1 at least"),
             ("0=40+9", "at most 48 bits"),
             ("0=4000000000+4000000000", "at most 48 bits"),

@@ -3,7 +3,6 @@
 mod boards;
 mod bus_card;
 mod comparison;
-mod config;
 mod constraints;
 mod documents;
 #[allow(dead_code)] // other topics take the rest
@@ -29,6 +28,7 @@ mod desk;
 
 mod bus {
     mod board;
+    mod cocotb;
     mod configuration;
 }
 mod ssi {

@@ -2,6 +2,7 @@
 
 #[allow(dead_code)] // other topics take the rest
 mod bus_card;
+mod config;
 mod elaborate;
 #[allow(dead_code)] // other topics take the rest
 mod emitted;

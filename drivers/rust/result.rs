@@ -172,7 +172,11 @@ impl Reading {
     /// Names of all that was wrong with the frame, in a channel that speaks this protocol; the primary cause is one of them.
     pub fn flag_names(&self, protocol: Protocol) -> impl Iterator<Item = &'static str> {
         let [beside, above] = [self.flags, self.flags >> FLAGS[0].width];
-        let fields = FLAGS.into_iter().zip([beside, above]);
+        // The rest of its frame stands there.
+        let is_flags = move |(field, _): &(&Field, u32)| {
+            !(protocol.row().has_special_bits && *field == FLAGS[1])
+        };
+        let fields = FLAGS.into_iter().zip([beside, above]).filter(is_flags);
         fields.flat_map(move |(field, flags)| {
             let named = match field.values_in(protocol) {
                 Values::Bits(named) => named,

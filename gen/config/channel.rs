@@ -236,7 +236,7 @@ fn read_range(
     if is_linear && (has(&SINGLE_TURN_BITS) || has(&MULTI_TURN_BITS)) {
         let line = linear.as_ref().map_or(table.line, |at| at.line);
         let text = format!(
-            "a scale has no turns; remove it, or {} and {}",
+            "a scale has no turns, and {} or {} is there; remove it",
             SINGLE_TURN_BITS.name, MULTI_TURN_BITS.name
         );
         table.complain(line, LINEAR.name, "true", &text);
@@ -246,7 +246,7 @@ fn read_range(
         let line = multi.as_ref().map_or(table.line, |at| at.line);
         let value = multi.map_or(String::new(), |at| at.value.to_string());
         let name = SINGLE_TURN_BITS.name;
-        let text = format!("counts turns of an angle; add {name}, or remove it");
+        let text = format!("counts turns of an angle, and nothing says how many bits that has; add, for example, {name} = 17, or remove it");
         table.complain(line, MULTI_TURN_BITS.name, &value, &text);
         return None;
     }

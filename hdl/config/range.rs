@@ -96,15 +96,15 @@ pub(super) fn check_range(check: &mut Check<'_>, config: &ChannelConfig) {
     }
     let mut remedies = Vec::new();
     if multi < width {
-        remedies.push(format!("single_turn_bits = {}", width - multi));
+        remedies.push(format!("set single_turn_bits to {}", width - multi));
     }
     if width - single <= max_of(MULTI_TURN_BITS) && width - single != multi {
-        remedies.push(format!("multi_turn_bits = {}", width - single));
+        remedies.push(format!("set multi_turn_bits to {}", width - single));
     }
     let text = format!(
-        "with multi_turn_bits = {multi} that is {} bits, and position_bits = {width}; use {}, or correct position_bits",
+        "with multi_turn_bits = {multi} that is {} bits, and position_bits = {width}; {}",
         single + multi,
-        remedies.join(" or ")
+        remedies.join(", or ")
     );
     check.fail("single_turn_bits", single, text);
 }
@@ -146,9 +146,9 @@ mod tests {
             let rest = resolved(&spec(spoken, 25, [0, 12])).unwrap();
             assert_eq!(rest.turn_bits(), Some([13, 12]));
             for (bits, told) in [
-                ([13, 13], "single_turn_bits = 13: with multi_turn_bits = 13 that is 26 bits, and position_bits = 25; use single_turn_bits = 12 or multi_turn_bits = 12"),
-                ([25, 1], "use single_turn_bits = 24 or multi_turn_bits = 0"),
-                ([5, 24], "use single_turn_bits = 1 or multi_turn_bits = 20, or correct position_bits"),
+                ([13, 13], "single_turn_bits = 13: with multi_turn_bits = 13 that is 26 bits, and position_bits = 25; set single_turn_bits to 12, or set multi_turn_bits to 12"),
+                ([25, 1], "set single_turn_bits to 24, or set multi_turn_bits to 0"),
+                ([5, 24], "set single_turn_bits to 1, or set multi_turn_bits to 20"),
                 ([26, 0], "single_turn_bits = 26: outside 1..25 (the position has no more)"),
                 ([12, 32], "multi_turn_bits = 32: outside 0..24 (the position has no more)"),
                 ([0, 25], "multi_turn_bits = 25: outside 0..24 (the position has no more)"),

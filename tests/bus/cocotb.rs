@@ -1,6 +1,6 @@
 //! Masters that others have written, on the emitted Verilog: cocotb with the bus models of cocotbext, in iverilog.
 
-use super::{text, WORD_BUSES};
+use crate::bus_card::{text, WORD_BUSES};
 use crate::tools;
 use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;

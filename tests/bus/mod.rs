@@ -2,7 +2,6 @@
 
 mod bank;
 mod claims;
-mod cocotb;
 mod error_test;
 mod handshake;
 mod outputs;

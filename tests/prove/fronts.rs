@@ -115,7 +115,7 @@ fn fronts_that_are_wrong_are_refuted() {
             "axi_lite_front",
             "assign may_write = has_aw & has_w & !has_b;",
             "assign may_write = has_aw & has_w;",
-            "writes_the_oldest",
+            "b_stands",
         ),
         // The page of an access follows the pins.
         (

@@ -34,6 +34,8 @@ const VERBS: &[&str] = &[
     "put",
     "did",
     "give",
+    "call",
+    "move",
     "line.parts",
     "stream.additional_data =",
     "start =",
@@ -237,7 +239,7 @@ impl Message<'_> {
     fn without(&self) -> Document {
         let mut document = self.document.clone();
         // The list, or one of its items.
-        if !self.is_list() || self.value.is_empty() {
+        if !self.is_list() || self.value.is_empty() || self.value.starts_with('[') {
             document.remove(&self.path);
             return document;
         }
@@ -249,6 +251,17 @@ impl Message<'_> {
             items.remove(at);
         }
         self.with_items(&self.path, &items)
+    }
+
+    /// With one of the items of a list called ignored, in turn.
+    fn each_ignored(&self) -> Vec<Document> {
+        let items = self.items(&self.path);
+        let with = |n: usize| {
+            let mut items = items.clone();
+            items[n] = "\"ignored\"".into();
+            self.with_items(&self.path, &items)
+        };
+        (0..items.len()).map(with).collect()
     }
 
     /// Where a key that a remedy names stands, or would stand.
@@ -407,6 +420,22 @@ impl Message<'_> {
             }
             "leave the list empty" => {
                 return each("leave the list empty", vec![self.with(&self.path, "[]")])
+            }
+            "leave the last ones out" => {
+                let items = self.items(&self.path);
+                let fewer = (0..items.len()).rev();
+                let fewer = fewer.map(|n| self.with_items(&self.path, &items[..n]));
+                return one("leave the last ones out", fewer.collect());
+            }
+            "call it \"ignored\"" | "call the first of them \"ignored\"" => {
+                return one("call it ignored", self.each_ignored());
+            }
+            "move it to bits_after" => {
+                let bad = format!("\"{}\"", self.problem.split('"').nth(1)?);
+                let items = self.items(&self.path).into_iter().filter(|i| *i != bad);
+                let mut document = self.with_items(&self.path, &items.collect::<Vec<_>>());
+                document.set(&self.place("bits_after"), &format!("[{bad}]"));
+                return each("move it", vec![document]);
             }
             "lower it" => return one("lower it", self.search("it", false)),
             "shorten it" => {

@@ -28,12 +28,12 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "bits_before = [] ",
             "bits_before = [\"ignored\", \"crc6\"] ",
-            "ssi.toml:20: channel[0].bits_before = [\"ignored\", \"crc6\"]: \"crc6\" is of the bits before it, and the position comes after these; move it to bits_after, or call it \"ignored\"",
+            "ssi.toml:21: channel[0].bits_before = [\"ignored\", \"crc6\"]: \"crc6\" is of the bits before it, and the position comes after these; move it to bits_after, or call it \"ignored\"",
         ),
         (
             "bits_after = [] ",
             "bits_after = [\"warning\"] ",
-            "ssi.toml:21: channel[0].bits_after = \"warning\": unknown bit; use \"ignored\", \"shown\", \"alarm\", ",
+            "ssi.toml:22: channel[0].bits_after = \"warning\": unknown bit; use \"ignored\", \"shown\", \"alarm\", ",
         ),
         (
             "bits_after = [] ",
@@ -43,7 +43,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "bits_after = [] ",
             &too_many,
-            "channel[0].bits_after = 15 words: a frame has at most 14 bits that are not position; leave out the last ones, with end_low = false",
+            "channel[0].bits_after = 15 words: a frame has at most 14 bits that are not position; leave the last ones out",
         ),
         (
             "bits_before = [] ",
@@ -53,7 +53,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "twice = true ",
             "twice = true\nend_low = false #",
-            "channel[1].end_low = false: an encoder that sends its position twice is LOW after each copy; remove end_low, or twice",
+            "channel[1].end_low = false: an encoder that sends its position twice is LOW after each copy; leave end_low out, or leave twice out",
         ),
         (
             "clock_hz = 1_000_000 ",

@@ -381,10 +381,10 @@ fn keys_of_a_range_are_refused_with_line_and_remedy() {
             .collect::<String>()
     };
     for (t_format, ssi, is) in [
-        ("multi_turn_bits = 16", "", "card.toml:13: channel[0].multi_turn_bits = 16: counts turns of an angle; add single_turn_bits, or remove it"),
+        ("multi_turn_bits = 16", "", "card.toml:13: channel[0].multi_turn_bits = 16: counts turns of an angle, and nothing says how many bits that has; add, for example, single_turn_bits = 17, or remove it"),
         ("single_turn_bits = 25", "", "card.toml:13: channel[0].single_turn_bits = 25: outside 1..24"),
-        ("", "linear = true\nmulti_turn_bits = 3", "channel[1].linear = true: a scale has no turns; remove it, or single_turn_bits and multi_turn_bits"),
-        ("", "single_turn_bits = 13\nmulti_turn_bits = 5", "channel[1].single_turn_bits = 13: with multi_turn_bits = 5 that is 18 bits, and position_bits = 17; use single_turn_bits = 12 or multi_turn_bits = 4"),
+        ("", "linear = true\nmulti_turn_bits = 3", "channel[1].linear = true: a scale has no turns, and single_turn_bits or multi_turn_bits is there; remove it"),
+        ("", "single_turn_bits = 13\nmulti_turn_bits = 5", "channel[1].single_turn_bits = 13: with multi_turn_bits = 5 that is 18 bits, and position_bits = 17; set single_turn_bits to 12, or set multi_turn_bits to 4"),
         ("", "multi_turn_bits = 17", "channel[1].multi_turn_bits = 17: outside 0..16"),
     ] {
         let told = told(t_format, ssi);

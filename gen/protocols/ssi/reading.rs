@@ -97,7 +97,7 @@ fn specials(
     }
     let specials = Specials::new(&found);
     if specials.is_none() && is_good {
-        let text = format!("a frame has at most {SPECIALS_MAX} bits that are not position; leave out the last ones, with end_low = false");
+        let text = format!("a frame has at most {SPECIALS_MAX} bits that are not position; leave the last ones out");
         table.complain(line, key.name, &format!("{} words", list.len()), &text);
     }
     specials.filter(|_| is_good)

@@ -98,7 +98,7 @@ impl SsiSpec {
         let bits = self.before.bits() + self.after.bits();
         let (key, list) = lists[usize::from(!self.after.is_empty())];
         if bits > SPECIALS_MAX {
-            let text = format!("{bits} bits of a frame are not position, bits_before and bits_after together; at most {SPECIALS_MAX}; leave out the last ones, with end_low = false");
+            let text = format!("{bits} bits of a frame are not position, bits_before and bits_after together; at most {SPECIALS_MAX} (without the last ones an encoder needs end_low = false); leave the last ones out");
             check.fail(key, list, text);
             return;
         }
@@ -117,7 +117,7 @@ impl SsiSpec {
     /// Between two copies there is a LOW bit, and so there is one after the last.
     fn check_held_end(&self, check: &mut Check<'_>) {
         if self.twice {
-            let text = "an encoder that sends its position twice is LOW after each copy; remove end_low, or twice";
+            let text = "an encoder that sends its position twice is LOW after each copy; leave end_low out, or leave twice out";
             check.fail("end_low", false, text.into());
         }
     }
