@@ -208,7 +208,7 @@ mod tests {
         let flags = 1 << endat::flag::TAIL_LOW.trailing_zeros() | 1 << 3 | 1 << 4;
         let line = RESULT.field("status", "line");
         let words = [
-            1 | 7 << 16 | 1 << line.lsb + line.width - 1,
+            1 | 7 << 16 | 1 << (line.lsb + line.width - 1),
             0,
             0,
             0,
