@@ -144,6 +144,12 @@ try:
     one("#register-search").send_keys("result0 status")
     one("#register-list button").click()
     until("a register", lambda: "fresh" in text("#register-value"))
+    one("#register-search").clear()
+    one("#register-search").send_keys("position_bits")
+    until("a register by its field", lambda: "config0.frame" in text("#register-list") and "position_bits: " in text("#register-list"))
+    one("#register-search").clear()
+    one("#register-search").send_keys("no_such_word")
+    until("nothing", lambda: text("#register-list") == "")
     one('[data-tab="memory"]').click()
     one('#parameter input[name="address"]').clear()
     one('#parameter input[name="address"]').send_keys("13")
@@ -161,12 +167,15 @@ try:
     until("causes", lambda: "not_taken" in text("#causes") and "was busy" in text("#causes"))
 
     # A recording, and a second page that sees it.
+    high = "return document.querySelector('header').offsetHeight"
+    before = browser.execute_script(high)
     key("r")
-    until("a recording", lambda: "rows in recordings" in text("#record"))
+    until("a recording", lambda: "rows in recordings" in text("#recording"))
+    assert browser.execute_script(high) == before, "the header jumps"
     here = browser.current_window_handle
     browser.switch_to.new_window("tab")
     browser.get(page)
-    until("the second page sees it", lambda: "rows in recordings" in text("#record"))
+    until("the second page sees it", lambda: "rows in recordings" in text("#recording"))
     one("#record").click()
     until("its end", lambda: text("#record") == "Record")
     browser.close()

@@ -187,6 +187,17 @@ fn a_page_has_positions_plots_registers_parameters_and_recordings() {
         .iter()
         .map(|r| r["name"].as_str().unwrap());
     assert!(names.clone().any(|n| n == "service1.request"));
+    // What the search of the page looks through.
+    let word = |name: &str| all.as_array().unwrap().iter().find(|r| r["name"] == name);
+    let fields = &word("config0.frame").unwrap()["fields"];
+    assert!(
+        fields
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|f| f[0] == "position_bits"),
+        "{fields}"
+    );
     assert!(
         !names
             .clone()
@@ -598,4 +609,10 @@ fn only_a_page_that_rehearses_makes_faults() {
         assert!(begin.elapsed() < Duration::from_secs(60), "never");
         thread::sleep(Duration::from_millis(100));
     }
+    // The card holds the last good position, and so does the page, as `read` and `monitor` do.
+    let held = view.until("a position that is held", |now| {
+        let one = &now["channels"][1];
+        one["fresh"] == false && one["raw"].is_string()
+    });
+    assert!(held["channels"][1]["value"].is_number(), "{held}");
 }

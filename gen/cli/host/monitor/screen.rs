@@ -47,6 +47,10 @@ const KEYS: [(&str, &str); 7] = [
 ];
 /// The same in a line.
 const FOOT: &str = "q end  space stop  up/down channel  z zero  Z no zero  ? help";
+/// The same where that is too long.
+const SHORT_FOOT: &str = "q end  space stop  up/down  z zero  ? help";
+/// Where it is narrower, frames by cause are below what else there is of a channel.
+const BESIDE_COLUMNS: u16 = 72;
 /// Lines of the table but those of channels: its frame, and what is above the columns.
 const TABLE: u16 = 3;
 /// Less is no room for what there is of one channel.
@@ -168,27 +172,58 @@ impl Screen {
         ])
     }
 
-    /// A line for each channel.
-    fn table(&self) -> Vec<Line<'_>> {
+    /// A line for each channel. Where its columns are too many, those that help least go first, so that the result is whole.
+    fn table(&self, width: usize) -> Vec<Line<'_>> {
+        let channels = 0..self.facts.scales.len();
+        let known = channels.clone().filter_map(|n| Some((n, self.seen(n)?)));
+        let lengths = known.map(|(n, seen)| {
+            let position = self.position(n, seen).chars().count();
+            (position, verdict(&seen.reading).chars().count())
+        });
+        let (position, result) = lengths.fold((8, 6), |(p, r), (position, result)| {
+            (p.max(position), r.max(result))
+        });
+        let (number, gap, rate_column, age_column) = (5, 2, 9, 8);
+        let usual = 27.max(position + 1);
+        let least = number + position + 1 + gap + result;
+        let has_rate = least + rate_column <= width;
+        let has_age = least + rate_column + age_column <= width;
+        let others = if has_rate { rate_column } else { 0 } + if has_age { age_column } else { 0 };
+        let room = width.saturating_sub(number + others + gap + result);
+        let place = usual.min(room).max(position + 1);
+        let columns = |position: &str, rate: &str, age: &str| {
+            let rate = if has_rate {
+                format!("{rate:>rate_column$}")
+            } else {
+                String::new()
+            };
+            let age = if has_age {
+                format!("{age:>age_column$}")
+            } else {
+                String::new()
+            };
+            format!("{position:<place$}{rate}{age}  ")
+        };
         let head = format!(
-            "  {:<3}{:<27}{:>9}{:>8}  {}",
-            "ch", "position", "per s", "age us", "result"
+            "  {:<3}{}result",
+            "ch",
+            columns("position", "per s", "age us")
         );
         let bold = Style::new().add_modifier(Modifier::BOLD);
         let mut lines = vec![Line::styled(head, bold)];
-        for channel in 0..self.facts.scales.len() {
+        for channel in channels {
             let mark = if channel == self.selected { '>' } else { ' ' };
             let Some(seen) = self.seen(channel) else {
                 lines.push(Line::raw(format!("{mark} {channel:<3}-")));
                 continue;
             };
             let r = &seen.reading;
-            let figures = format!(
-                "{mark} {channel:<3}{:<27}{:>9}{:>8}  ",
-                self.position(channel, seen),
-                rate(seen),
-                r.age_us
+            let figures = columns(
+                &self.position(channel, seen),
+                &rate(seen),
+                &r.age_us.to_string(),
             );
+            let figures = format!("{mark} {channel:<3}{figures}");
             let row = vec![
                 Span::raw(figures),
                 Span::styled(verdict(r), self.health(seen)),
@@ -277,25 +312,38 @@ pub fn draw(frame: &mut Frame<'_>, screen: &Screen) {
         true => Block::bordered().title(" positions "),
         false => Block::new(),
     };
-    frame.render_widget(Paragraph::new(screen.table()).block(block), table);
+    let room = area.width.saturating_sub(if has_frames { 2 } else { 0 });
+    let lines = screen.table(room.into());
+    frame.render_widget(Paragraph::new(lines).block(block), table);
     if detail.height >= DETAIL {
         let name = format!(" channel {} ", screen.selected);
+        let details = screen.details();
         let (left, right) = match screen.causes() {
-            Some(causes) => {
+            Some(causes) if area.width >= BESIDE_COLUMNS => {
                 let columns = Layout::horizontal([Constraint::Min(0), Constraint::Length(34)]);
                 let [left, right] = columns.areas(detail);
                 (left, Some((right, causes)))
             }
+            Some(causes) => {
+                let high = (details.len() as u16 + 2).min(detail.height);
+                let rows = Layout::vertical([Constraint::Length(high), Constraint::Min(0)]);
+                let [above, below] = rows.areas(detail);
+                (above, (below.height > 2).then_some((below, causes)))
+            }
             None => (detail, None),
         };
-        let details = Paragraph::new(screen.details()).block(Block::bordered().title(name));
+        let details = Paragraph::new(details).block(Block::bordered().title(name));
         frame.render_widget(details, left);
         if let Some((right, causes)) = right {
             let block = Block::bordered().title(" frames by cause ");
             frame.render_widget(Paragraph::new(causes).block(block), right);
         }
     }
-    frame.render_widget(Paragraph::new(FOOT), foot);
+    let keys = match usize::from(area.width) < FOOT.len() {
+        true => SHORT_FOOT,
+        false => FOOT,
+    };
+    frame.render_widget(Paragraph::new(keys), foot);
     if screen.has_help {
         help(frame, area);
     }

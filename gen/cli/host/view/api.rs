@@ -270,8 +270,11 @@ impl Api {
         let system_hz = f64::from(state.identity.system_hz.max(1));
         let channels = state.scales.iter().enumerate().map(|(n, scale)| {
             let cell = state.last.as_ref().and_then(|row| row.cells.get(n));
-            let units = cell.and_then(|c| c.position).map(|p| scale.convert(p));
             let result = state.results.get(n);
+            // A row without a position says why; the card still holds the last good one.
+            let held = result.filter(|r| r.valid).map(|r| r.position);
+            let position = cell.and_then(|c| c.position.or(held));
+            let units = position.map(|p| scale.convert(p));
             let ns = |cycles: u16| f64::from(cycles) * 1e9 / system_hz;
             let counts = state.count.causes().filter(|(channel, ..)| *channel == n);
             let counts = counts.map(|(_, cause, count)| (cause.to_owned(), json!(count)));
@@ -279,7 +282,7 @@ impl Api {
                 "value": units.map(|u| u.value),
                 "continuous": state.history.position(n),
                 "turns": units.and_then(|u| u.turns),
-                "raw": cell.and_then(|c| c.position).map(|p| format!("{p:X}")),
+                "raw": position.map(|p| format!("{p:X}")),
                 "fresh": cell.is_some_and(|c| c.fresh),
                 "cause": cell.map(|c| c.cause),
                 "age_us": result.map(|r| r.age_us),
@@ -377,6 +380,7 @@ impl Api {
                 "name": place.to_string(),
                 "access": place.register.access.short(),
                 "meaning": place.register.meaning,
+                "fields": place.register.fields.iter().map(|f| [f.name, f.meaning]).collect::<Vec<_>>(),
             })
         });
         Ok(all.collect())

@@ -92,13 +92,52 @@ live  /dev/ttyUSB1  2 channels, 100 MHz
     assert!(found.ends_with(&format!("{FOOT}\n")), "{found}");
 }
 
+/// Catches a verdict, a figure or a cause that is cut off beside an empty column.
+#[test]
+fn a_terminal_of_60_columns_shows_all_of_a_channel() {
+    let wanted = "\
+live  /dev/ttyUSB1  2 channels, 100 MHz
+┌ positions ───────────────────────────────────────────────┐
+│  ch position                     per s  age us  result   │
+│> 0  45.0000000 deg               10000      52  good     │
+│  1  90.0000000 deg               10000      52  held: crc│
+└──────────────────────────────────────────────────────────┘
+┌ channel 0 ───────────────────────────────────────────────┐
+│raw               0x4000000                               │
+│line delay        120 ns                                  │
+│recovery time     12.50 us                                │
+│edges             -2 to 3 places                          │
+│state             initialised                             │
+│ID number         123456                                  │
+└──────────────────────────────────────────────────────────┘
+┌ frames by cause ─────────────────────────────────────────┐
+│all                         1012                          │
+│good                        1000                          │
+│crc                           10                          │
+│f1                             2                          │
+";
+    let found = drawn(&screen(2), 60, 24);
+    assert!(found.starts_with(wanted), "{found}");
+    assert!(found.ends_with(&format!("{SHORT_FOOT}\n")), "{found}");
+    // The longest name of a cause, and no room for all columns.
+    let mut narrow = screen(1);
+    let mut long = seen(1 << 26, "recovery_too_short");
+    long.reading.fresh = false;
+    narrow.look(Look {
+        channels: vec![long],
+        retries: 0,
+    });
+    let found = drawn(&narrow, 60, 24);
+    assert!(found.contains("held: recovery_too_short"), "{found}");
+}
+
 #[test]
 fn a_small_terminal_keeps_the_positions_and_none_is_too_small() {
     let wanted = "\
 live  /dev/ttyUSB1  2 channe
-  ch position
-> 0  45.0000000 deg
-  1  90.0000000 deg
+  ch position         result
+> 0  45.0000000 deg   good
+  1  90.0000000 deg   held:
 ";
     assert_eq!(drawn(&screen(2), 28, 4), wanted);
     let mut screen = screen(8);

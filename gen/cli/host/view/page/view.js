@@ -109,7 +109,9 @@ function shown() {
     fact("damaged on the link", count(now.damaged), now.damaged > 0),
   );
   $("record").setAttribute("aria-pressed", String(now.recording !== null));
-  $("record").textContent = now.recording ? `Stop: ${count(now.recording.rows)} rows in ${now.recording.path}` : "Record";
+  $("record").textContent = now.recording ? "Stop" : "Record";
+  $("recording").hidden = !now.recording;
+  $("recording").textContent = now.recording ? `Recording: ${count(now.recording.rows)} rows in ${now.recording.path}` : "";
   now.channels.forEach((one, n) => {
     const channel = card.channels[n], box = channel.box;
     const isNone = one.value === null;
@@ -154,7 +156,8 @@ function causes() {
 // ---- the plot ----
 
 const PAD = { left: 74, right: 14, top: 10, bottom: 26 };
-const LANE = 11;
+// As high as its letters.
+const LANE = 15;
 // No green: nothing here is good.
 const MARKS = ["#d32f2f", "#f57c00", "#8e24aa", "#c2185b", "#8d6e63", "#fbc02d", "#ff7043", "#ad1457"];
 const NO_RESULT = "#78909c";
@@ -452,12 +455,20 @@ async function registers() {
 
 function listed() {
   const words = $("register-search").value.toLowerCase().split(/\s+/).filter(Boolean);
-  const found = names.filter((r) => words.every((w) => (r.name + " " + r.meaning).toLowerCase().includes(w))).slice(0, 200);
-  $("register-list").replaceChildren(...found.map((r) => {
+  // A field is looked for by its name, with that of its register before it or not, and by its meaning.
+  const has = (text) => words.every((w) => text.toLowerCase().includes(w));
+  const found = names.map((r) => [r, words.length ? r.fields.filter(([name, means]) => has(`${r.name}.${name} ${means} ${r.meaning}`)) : []])
+    .filter(([r, fields]) => has(r.name + " " + r.meaning) || fields.length).slice(0, 200);
+  $("register-list").replaceChildren(...found.map(([r, fields]) => {
     const line = make("li"), button = make("button", r.name);
     button.type = "button";
     button.addEventListener("click", () => register(r));
     line.append(button, ` ${r.access}: ${r.meaning}`);
+    if (fields.length && !has(r.name + " " + r.meaning)) {
+      const list = make("ul");
+      list.append(...fields.map(([name, means]) => make("li", `${name}: ${means}`)));
+      line.append(list);
+    }
     return line;
   }));
 }
