@@ -59,7 +59,7 @@ impl Ranges {
             // Of any protocol.
             if said.range(Protocol::Endat).is_none() {
                 return Err(wrong(
-                    "a position has at most 48 bits, and an angle 1 at least; give fewer bits",
+                    "the angle has at least 1 bit, and all together are at most 48; give bits that fit",
                 ));
             }
             if place.replace(said).is_some() {
@@ -179,9 +179,9 @@ mod tests {
             ("17+16", "is no range; give bits"),
             ("0=", "is no range; give bits"),
             ("0=17+x", "is no range; give bits"),
-            ("0=0+16", "an angle 1 at least"),
-            ("0=40+9", "at most 48 bits"),
-            ("0=4000000000+4000000000", "at most 48 bits"),
+            ("0=0+16", "the angle has at least 1 bit"),
+            ("0=40+9", "at most 48"),
+            ("0=4000000000+4000000000", "at most 48"),
             ("8=17", "no card has a channel 8"),
         ] {
             let why = parsed(&[text]).unwrap_err();

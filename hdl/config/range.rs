@@ -98,7 +98,7 @@ pub(super) fn check_range(check: &mut Check<'_>, config: &ChannelConfig) {
     if multi < width {
         remedies.push(format!("set single_turn_bits to {}", width - multi));
     }
-    if width - single <= max_of(MULTI_TURN_BITS) && width - single != multi {
+    if single > 0 && width - single <= max_of(MULTI_TURN_BITS) && width - single != multi {
         remedies.push(format!("set multi_turn_bits to {}", width - single));
     }
     let text = format!(
@@ -176,7 +176,7 @@ mod tests {
             (
                 asked(Request::SingleTurn),
                 [17, 16],
-                "multi_turn_bits = 16: request = 0 brings no turns; remove it, or use request = 3",
+                "multi_turn_bits = 16: request = 0 brings no turns; remove it, or set request to 3",
             ),
             (
                 asked(Request::MultiTurn),

@@ -258,7 +258,9 @@ impl Message<'_> {
         let items = self.items(&self.path);
         let with = |n: usize| {
             let mut items = items.clone();
-            items[n] = "\"ignored\"".into();
+            let bits = if items[n] == "\"crc6\"" { 6 } else { 1 };
+            let ignored = vec!["\"ignored\"".to_owned(); bits];
+            items.splice(n..=n, ignored);
             self.with_items(&self.path, &items)
         };
         (0..items.len()).map(with).collect()
@@ -427,7 +429,10 @@ impl Message<'_> {
                 let fewer = fewer.map(|n| self.with_items(&self.path, &items[..n]));
                 return one("leave the last ones out", fewer.collect());
             }
-            "call it \"ignored\"" | "call the first of them \"ignored\"" => {
+            "call it \"ignored\""
+            | "call the first of them \"ignored\""
+            | "call its six bits \"ignored\""
+            | "call the six bits of the first one \"ignored\"" => {
                 return one("call it ignored", self.each_ignored());
             }
             "move it to bits_after" => {

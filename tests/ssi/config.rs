@@ -28,7 +28,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "bits_before = [] ",
             "bits_before = [\"ignored\", \"crc6\"] ",
-            "ssi.toml:21: channel[0].bits_before = [\"ignored\", \"crc6\"]: \"crc6\" is of the bits before it, and the position comes after these; move it to bits_after, or call it \"ignored\"",
+            "ssi.toml:21: channel[0].bits_before = [\"ignored\", \"crc6\"]: \"crc6\" is of the bits before it, and the position comes after these; move it to bits_after, or call its six bits \"ignored\"",
         ),
         (
             "bits_after = [] ",
@@ -38,7 +38,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "bits_after = [] ",
             "bits_after = [\"parity_even\", \"parity_odd\"] ",
-            "has two parity bits or two CRCs; call the first of them \"ignored\"",
+            "has two parity bits; call the first of them \"ignored\"",
         ),
         (
             "bits_after = [] ",

@@ -84,14 +84,27 @@ impl SsiSpec {
     fn check_specials(&self, check: &mut Check<'_>) {
         let lists = [("bits_before", &self.before), ("bits_after", &self.after)];
         if let Some(special) = self.before.iter().find(|s| s.is_check()) {
-            let text = format!("{:?} is of the bits before it, and the position comes after these; move it to bits_after, or call it \"ignored\"", special.word());
+            let text = format!(
+                "{:?} is of the bits before it, and the position comes after these; move it to bits_after, or {}",
+                special.word(),
+                match special {
+                    Special::Crc6 => "call its six bits \"ignored\"",
+                    _ => "call it \"ignored\"",
+                }
+            );
             check.fail("bits_before", self.before, text);
             return;
         }
         let count = |is: fn(&Special) -> bool| self.after.iter().filter(is).count();
         let parities = count(|s| s.is_check() && *s != Special::Crc6);
-        if parities > 1 || count(|s| *s == Special::Crc6) > 1 {
-            let text = "has two parity bits or two CRCs; call the first of them \"ignored\"";
+        let twice = match parities > 1 {
+            true => Some("has two parity bits; call the first of them \"ignored\""),
+            false if count(|s| *s == Special::Crc6) > 1 => {
+                Some("has two CRCs; call the six bits of the first one \"ignored\"")
+            }
+            false => None,
+        };
+        if let Some(text) = twice {
             check.fail("bits_after", self.after, text.into());
             return;
         }

@@ -83,10 +83,10 @@ impl TFormatSpec {
         let id = self.request.id();
         let brings = |content| self.request.reply().contains(&content);
         if !brings(Content::SingleTurn) {
-            let text = format!("request = {id} brings no angle; remove it, or use request = 3");
+            let text = format!("request = {id} brings no angle; remove it, or set request to 3");
             check.fail("single_turn_bits", single, text);
         } else if multi > 0 && !brings(Content::MultiTurn) {
-            let text = format!("request = {id} brings no turns; remove it, or use request = 3");
+            let text = format!("request = {id} brings no turns; remove it, or set request to 3");
             check.fail("multi_turn_bits", multi, text);
         }
     }

@@ -41,7 +41,7 @@ const KEYS: [(&str, &str); 7] = [
     ("space", "stop the picture, and go on"),
     ("up, down, 0 to 7", "choose a channel"),
     ("z", "its position is 0 from here on"),
-    ("Z", "positions as the encoders send them again"),
+    ("Z", "no zero: as the encoders send them"),
     ("?", "this help"),
     ("Ctrl-C", "end"),
 ];
