@@ -20,14 +20,15 @@ pub struct Ranges([Option<Said>; CHANNELS_MAX]);
 /// How it is written.
 const FORM: &str = "is no range; give bits of the angle and bits that count turns, for example 0=17+16 for channel 0, or 0=linear";
 
-/// Why something of a channel is refused.
+/// Why positions of a channel are not counted on.
 pub fn unknown(channel: usize) -> String {
     format!("nobody says where positions of channel {channel} begin anew")
 }
 
-/// What makes the range of a channel known to the command that has just refused something.
-pub fn remedy(channel: usize) -> String {
-    format!("give --range {channel}=SINGLE+MULTI (bits of the angle and bits that count turns, as in {channel}=17+16) or --range {channel}=linear")
+/// The same with the remedy of a command that has `--range`.
+pub fn refusal(channel: usize) -> String {
+    let why = unknown(channel);
+    format!("{why}; give --range {channel}=SINGLE+MULTI (bits of the angle and bits that count turns, as in {channel}=17+16) or --range {channel}=linear")
 }
 
 impl Ranges {

@@ -172,7 +172,7 @@ impl Reading {
     /// Names of all that was wrong with the frame, in a channel that speaks this protocol; the primary cause is one of them.
     pub fn flag_names(&self, protocol: Protocol) -> impl Iterator<Item = &'static str> {
         let [beside, above] = [self.flags, self.flags >> FLAGS[0].width];
-        // The rest of its frame stands there.
+        // Special bits have the place of these flags.
         let is_flags = move |(field, _): &(&Field, u32)| {
             !(protocol.row().has_special_bits && *field == FLAGS[1])
         };

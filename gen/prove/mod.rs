@@ -171,15 +171,14 @@ pub fn prove(
 /// Every module of a card, with the part that it is proved in and how many properties it has.
 fn modules(subject: &Subject, reports: &[PartReport]) -> Vec<ModuleRow> {
     let design = &subject.design;
-    let rows: Vec<&Row> = reports.iter().flat_map(|part| &part.rows).collect();
-    let row = |(index, module): (usize, &Module)| {
-        let is_in = |part: &&usize| below(design, **part).contains(&index);
-        let part = subject.parts.iter().find(is_in);
-        ModuleRow {
-            module: module.name.clone(),
-            part: part.map(|part| design.modules[*part].name.clone()),
-            properties: rows.iter().filter(|r| r.module == module.name).count(),
-        }
+    let trees = subject.parts.iter().map(|part| below(design, *part));
+    let trees: Vec<Vec<usize>> = trees.collect();
+    let rows = || reports.iter().flat_map(|part| &part.rows);
+    let row = |(index, module): (usize, &Module)| ModuleRow {
+        module: module.name.clone(),
+        part: (trees.iter().find(|tree| tree.contains(&index)))
+            .map(|tree| design.modules[tree[0]].name.clone()),
+        properties: rows().filter(|r| r.module == module.name).count(),
     };
     design.modules.iter().enumerate().map(row).collect()
 }
@@ -324,19 +323,20 @@ pub(crate) fn refutes(
     let own = rtl_design::verilog::file_name(&design.modules[module].name);
     let mut found = None;
     for &part in &subject.parts {
-        if !below(design, part).contains(&module) {
+        let tree = below(design, part);
+        if !tree.contains(&module) {
             continue;
         }
         let folder = scratch::folder()?;
+        let harness = harness::artifact(&design.modules[part], design.has_initial_values);
         let mut files = subject.files.clone();
-        files.push(harness::artifact(
-            &design.modules[part],
-            design.has_initial_values,
-        ));
+        files.push(harness.clone());
         crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
         files.retain(|file| file.path != own);
-        let has_properties = |index: usize| !design.modules[index].properties.is_empty();
-        if below(design, part).into_iter().any(has_properties) {
+        if tree
+            .iter()
+            .any(|index| !design.modules[*index].properties.is_empty())
+        {
             let proof = Proof {
                 folder: folder.path(),
                 files: &files,
@@ -344,16 +344,18 @@ pub(crate) fn refutes(
                 has_initial_values: design.has_initial_values,
                 first,
             };
-            found = Some(!proof.run()?.failed.is_empty());
+            if !proof.run()?.failed.is_empty() {
+                return Ok(Some(true));
+            }
+            found = Some(false);
         }
-        if let (false, Some(claim)) = (found == Some(true), fronts::claim_of(&design.modules[part]))
-        {
-            files.retain(|file| !file.path.ends_with(".sv"));
+        if let Some(claim) = fronts::claim_of(&design.modules[part]) {
+            files.retain(|file| file.path != harness.path);
             let answer = claim.ask(design, &files, part, folder.path(), first)?;
-            found = Some(!answer.failed.is_empty());
-        }
-        if found == Some(true) {
-            break;
+            if !answer.failed.is_empty() {
+                return Ok(Some(true));
+            }
+            found = Some(false);
         }
     }
     Ok(found)

@@ -92,8 +92,8 @@ pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
             for property in properties {
                 let name = property.name.as_str();
                 if !out.contains(&format!("| `{name}` |")) {
-                    let block = block_name("", block);
-                    let block = block.trim_start_matches('_');
+                    let block = block_name("card", block);
+                    let block = self::block("card", &block);
                     let _ = writeln!(out, "| `{name}` | `{block}` | {} |", property.words);
                 }
             }

@@ -30,6 +30,20 @@ impl Verdict {
     }
 }
 
+impl Verdict {
+    /// Of a property, after an answer in which it failed or did not.
+    pub(super) fn of(answer: &Answer, has_failed: bool) -> Self {
+        match (answer.failed.is_empty(), has_failed) {
+            (true, _) => Self::Proved,
+            (false, false) => Self::Undecided,
+            (false, true) if answer.is_reached => Self::Violated {
+                after_cycles: answer.cycles,
+            },
+            (false, true) => Self::NotProved,
+        }
+    }
+}
+
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -131,19 +145,7 @@ pub(super) fn rows(blocks: &[Block], begins: Begins, answer: &Answer) -> Vec<Row
         .filter_map(|path| property_of(blocks, path))
         .map(|(block, property)| (block.module.name.as_str(), property.name.as_str()))
         .collect();
-    let verdict = |module: &str, name: &str| {
-        if answer.failed.is_empty() {
-            Verdict::Proved
-        } else if !failed.contains(&(module, name)) {
-            Verdict::Undecided
-        } else if answer.is_reached {
-            Verdict::Violated {
-                after_cycles: answer.cycles,
-            }
-        } else {
-            Verdict::NotProved
-        }
-    };
+    let verdict = |module: &str, name: &str| Verdict::of(answer, failed.contains(&(module, name)));
     let mut rows = vec![];
     for block in blocks {
         for property in block.properties.iter().filter(|p| p.begins == begins) {

@@ -269,9 +269,7 @@ impl Derived {
         if self.scale.is_known() || !is_needed {
             return Ok(());
         }
-        let unknown = range::unknown(self.channels.0);
-        let remedy = range::remedy(self.channels.0);
-        Err(wrong(spec, &format!("{unknown}; {remedy}")))
+        Err(wrong(spec, &range::refusal(self.channels.0)))
     }
 
     fn value(&mut self, row: &Row, time_s: f64) -> Option<f64> {

@@ -145,14 +145,17 @@ fn step(number: u16) -> String {
     format!("step {number} ({})", step_name(number))
 }
 
+/// A line of a name plate, if there is something to say.
+fn add_line(text: &mut String, name: &str, value: Option<String>) {
+    if let Some(value) = value {
+        let _ = writeln!(text, "  {name:<18}{value}");
+    }
+}
+
 /// A name plate, a line for each thing that is known.
 pub fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
     let mut text = String::new();
-    let mut line = |name: &str, value: Option<String>| {
-        if let Some(value) = value {
-            let _ = writeln!(text, "  {name:<18}{value}");
-        }
-    };
+    let mut line = |name: &str, value| add_line(&mut text, name, value);
     let state = match (plate.initialised, plate.failed, plate.step) {
         (true, ..) => "yes".to_owned(),
         (_, Some(failed), _) => format!("no: {} failed; is the encoder plugged in?", step(failed)),
@@ -181,14 +184,9 @@ pub fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
         "position",
         plate.position_bits.map(|bits| format!("{bits} bits")),
     );
-    // As the drivers print them.
-    let driver = plate.driver.to_string();
-    for known in driver.lines() {
-        let (name, value) = known
-            .trim_start()
-            .split_at(18.min(known.trim_start().len()));
-        line(name.trim_end(), Some(value.to_owned()));
-    }
+    // The drivers print the same lines.
+    let _ = write!(text, "{}", plate.driver);
+    let mut line = |name: &str, value| add_line(&mut text, name, value);
     line(
         "tcal",
         plate

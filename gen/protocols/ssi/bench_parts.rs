@@ -68,14 +68,10 @@ impl Port {
             odd: u8::from(asked.parity == Parity::Odd),
             before: asked.before.bits(),
             after: asked.after.bits(),
-            check_at: place(asked, |s| s.is_check() && s != Special::Crc6),
+            check_at: place(asked, Special::is_parity),
             check_odd: asked.after.iter().any(|s| s == Special::ParityOdd).into(),
             crc_at: place(asked, |s| s == Special::Crc6),
-            has_parity: asked.has_parity()
-                || asked
-                    .after
-                    .iter()
-                    .any(|s| s.is_check() && s != Special::Crc6),
+            has_parity: asked.has_parity() || asked.after.iter().any(Special::is_parity),
             held: asked.holds_end.into(),
             bit_delay_ns: real(bit_delay_ns.max(0.0)),
             tm_ns: whole(channel.spec.recovery_max_ns),

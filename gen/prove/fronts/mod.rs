@@ -7,8 +7,9 @@ use super::report::{Row, Verdict};
 use super::tools::{self, Answer};
 use crate::artifact::Artifact;
 use crate::error::GenError;
-use rtl_design::elaborate::properties::{of_label, properties, Property};
+use rtl_design::elaborate::properties::{of_label, properties, Begins, Property};
 use rtl_design::elaborate::{Design, Module};
+use rtl_design::verilog::emitted_name;
 use std::path::Path;
 
 /// From here on a text says what holds between the blocks inside.
@@ -101,7 +102,7 @@ impl Claim {
         found.push(Property {
             name: INSIDE_NAME.into(),
             words: INSIDE_WORDS.into(),
-            begins: rtl_design::elaborate::properties::Begins::AtStart,
+            begins: Begins::AtStart,
             assertions: all - promised,
         });
         found
@@ -133,21 +134,13 @@ impl Claim {
             of_label(&known, label).unwrap_or(known.len() - 1)
         };
         let failed: Vec<usize> = answer.failed.iter().map(place).collect();
-        let verdict = |n: usize| match (failed.is_empty(), failed.contains(&n)) {
-            (true, _) => Verdict::Proved,
-            (_, false) => Verdict::Undecided,
-            _ if answer.is_reached => Verdict::Violated {
-                after_cycles: answer.cycles,
-            },
-            _ => Verdict::NotProved,
-        };
         let rows = known.iter().enumerate().map(|(n, property)| Row {
             module: module.name.clone(),
             name: property.name.clone(),
             words: property.words.clone(),
             from_any_state: false,
             assertions: property.assertions,
-            verdict: verdict(n),
+            verdict: Verdict::of(&answer, failed.contains(&n)),
             trace: None,
         });
         Ok(rows.collect())
@@ -172,7 +165,7 @@ impl Claim {
             let mut all = self.waits.iter();
             all.any(|name| line.contains(&format!(" {name}: ")))
         };
-        let without_waits: String = lines(&text, |line| (!is_wait(line)).then(|| line.into()));
+        let without_waits = lines(&text, |line| (!is_wait(line)).then(|| line.into()));
         let others_granted = lines(&text, |line| match is_wait(line) {
             true => Some(line.into()),
             false => Some(line.replace(": assert (", ": assume (")),
@@ -224,7 +217,7 @@ fn start_values(design: &Design, top: usize) -> Vec<(String, usize, u128)> {
         let module = &design.modules[index];
         for register in module.registers.iter().filter(|r| r.reset.is_some()) {
             let net = &module.nets[register.q];
-            let name = rtl_design::verilog::emitted_name(&net.name);
+            let name = emitted_name(&net.name);
             found.push((format!("{path}{name}"), net.width_bits, register.start));
         }
         for instance in &module.instances {

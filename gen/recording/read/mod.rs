@@ -53,8 +53,7 @@ impl Head {
             // Who gave them another unit knew.
             None => self.units.get(channel).is_some_and(|unit| unit != "counts"),
         };
-        let remedy = || format!("{}; {}", range::unknown(channel), range::remedy(channel));
-        (!is_known).then(remedy)
+        (!is_known).then(|| range::refusal(channel))
     }
 
     /// Which cells are bad.

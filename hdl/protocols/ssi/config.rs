@@ -96,7 +96,7 @@ impl SsiSpec {
             return;
         }
         let count = |is: fn(&Special) -> bool| self.after.iter().filter(is).count();
-        let parities = count(|s| s.is_check() && *s != Special::Crc6);
+        let parities = count(|s| s.is_parity());
         let twice = match parities > 1 {
             true => Some("has two parity bits; call the first of them \"ignored\""),
             false if count(|s| *s == Special::Crc6) > 1 => {

@@ -91,9 +91,14 @@ impl Special {
         !self.is_check() && !matches!(self, Self::Ignored)
     }
 
+    /// Whether it is the parity of the bits before it.
+    pub const fn is_parity(self) -> bool {
+        matches!(self, Self::ParityEven | Self::ParityOdd)
+    }
+
     /// Whether it checks the bits before it.
     pub const fn is_check(self) -> bool {
-        matches!(self, Self::ParityEven | Self::ParityOdd | Self::Crc6)
+        self.is_parity() || matches!(self, Self::Crc6)
     }
 
     /// The cause that it may be, and the level at which it is.

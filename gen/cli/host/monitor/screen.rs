@@ -117,11 +117,7 @@ impl Screen {
         if let (Some(scale), Some(reading)) = (scale, reading.filter(|r| r.valid)) {
             if !scale.is_known() {
                 // A difference takes what a turn is.
-                self.trouble = Some(format!(
-                    "z: {}; {}",
-                    range::unknown(self.selected),
-                    range::remedy(self.selected)
-                ));
+                self.trouble = Some(format!("z: {}", range::refusal(self.selected)));
                 return;
             }
             self.zeros[self.selected] = Some(scale.steps(reading.position).into());
@@ -174,41 +170,36 @@ impl Screen {
 
     /// A line for each channel. Where its columns are too many, those that help least go first, so that the result is whole.
     fn table(&self, width: usize) -> Vec<Line<'_>> {
+        const NUMBER: usize = 5;
+        const GAP: usize = 2;
         let channels = 0..self.facts.scales.len();
         let known = channels.clone().filter_map(|n| Some((n, self.seen(n)?)));
-        let lengths = known.map(|(n, seen)| {
-            let position = self.position(n, seen).chars().count();
-            (position, verdict(&seen.reading).chars().count())
-        });
-        let (position, result) = lengths.fold((8, 6), |(p, r), (position, result)| {
-            (p.max(position), r.max(result))
-        });
-        let (number, gap, rate_column, age_column) = (5, 2, 9, 8);
-        let usual = 27.max(position + 1);
-        let least = number + position + 1 + gap + result;
-        let has_rate = least + rate_column <= width;
-        let has_age = least + rate_column + age_column <= width;
-        let others = if has_rate { rate_column } else { 0 } + if has_age { age_column } else { 0 };
-        let room = width.saturating_sub(number + others + gap + result);
-        let place = usual.min(room).max(position + 1);
-        let columns = |position: &str, rate: &str, age: &str| {
-            let rate = if has_rate {
-                format!("{rate:>rate_column$}")
-            } else {
-                String::new()
-            };
-            let age = if has_age {
-                format!("{age:>age_column$}")
-            } else {
-                String::new()
-            };
-            format!("{position:<place$}{rate}{age}  ")
+        let (mut position, mut result) = ("position".len(), "result".len());
+        for (n, seen) in known {
+            position = position.max(self.position(n, seen).chars().count());
+            result = result.max(verdict(&seen.reading).chars().count());
+        }
+        position += 1;
+        let mut room = width.saturating_sub(NUMBER + position + GAP + result);
+        // The first ones that there is room for.
+        let figures = [("per s", 9), ("age us", 8)]
+            .into_iter()
+            .take_while(|(_, columns)| {
+                let left = room.checked_sub(*columns);
+                room = left.unwrap_or(room);
+                left.is_some()
+            });
+        let (names, columns): (Vec<&str>, Vec<usize>) = figures.unzip();
+        let position = (position + room).min(27.max(position));
+        let row = |begin: String, place: &str, figures: &[String]| {
+            let figures = figures.iter().zip(&columns);
+            let figures: String = figures
+                .map(|(text, columns)| format!("{text:>columns$}"))
+                .collect();
+            format!("{begin:<NUMBER$}{place:<position$}{figures}{:GAP$}", "")
         };
-        let head = format!(
-            "  {:<3}{}result",
-            "ch",
-            columns("position", "per s", "age us")
-        );
+        let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
+        let head = row("  ch".into(), "position", &names) + "result";
         let bold = Style::new().add_modifier(Modifier::BOLD);
         let mut lines = vec![Line::styled(head, bold)];
         for channel in channels {
@@ -218,14 +209,10 @@ impl Screen {
                 continue;
             };
             let r = &seen.reading;
-            let figures = columns(
-                &self.position(channel, seen),
-                &rate(seen),
-                &r.age_us.to_string(),
-            );
-            let figures = format!("{mark} {channel:<3}{figures}");
+            let figures = [rate(seen), r.age_us.to_string()];
+            let begin = format!("{mark} {channel}");
             let row = vec![
-                Span::raw(figures),
+                Span::raw(row(begin, &self.position(channel, seen), &figures)),
                 Span::styled(verdict(r), self.health(seen)),
             ];
             let chosen = match channel == self.selected {

@@ -237,7 +237,7 @@ impl Api {
                 "unit": scale.convert(0).unit,
                 "digits": scale.digits(),
                 "wraps_at": scale.wraps_at(),
-                "unknown": (!scale.is_known()).then(|| format!("{}; {}", range::unknown(n), range::remedy(n))),
+                "unknown": (!scale.is_known()).then(|| range::refusal(n)),
                 "plate": text,
                 "serial": plate.and_then(|p| p.serial.clone()),
             })
