@@ -118,7 +118,7 @@ pub struct Report {
     pub sources: Vec<&'static str>,
     /// Which triggers each channel takes after reset; empty where all take all of them.
     pub own_triggers: Vec<String>,
-    /// What positions of each channel are for a host; none where it is not said.
+    /// The range of each channel's position; none where the file gives none.
     pub ranges: Vec<Option<String>>,
     /// What each channel does besides positions.
     pub service: Vec<&'static str>,
@@ -194,7 +194,7 @@ fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelR
     }
 }
 
-/// What positions of a channel are for a host.
+/// The range of a channel's position.
 fn range(channel: &ChannelConfig) -> Option<String> {
     match channel.turn_bits() {
         Some([single, 0]) => Some(format!("{single} bits of angle")),

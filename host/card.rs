@@ -161,7 +161,7 @@ impl<T: Transport> Card<T> {
         self.patience = patience;
     }
 
-    /// What is said about positions, whatever the card says.
+    /// Ranges given by the user; they win over those of the card.
     pub fn ranges(&self) -> &Ranges {
         &self.ranges
     }

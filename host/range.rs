@@ -13,7 +13,7 @@ enum Said {
     Rotary { single: u32, multi: u32 },
 }
 
-/// What is said of some channels.
+/// Ranges that the user has given.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ranges([Option<Said>; CHANNELS_MAX]);
 
@@ -32,7 +32,7 @@ pub fn refusal(channel: usize) -> String {
 }
 
 impl Ranges {
-    /// What these texts say.
+    /// Parses the texts of `--range`.
     pub fn parse(texts: &[String]) -> Result<Self, HostError> {
         let mut all = Self::default();
         for text in texts {

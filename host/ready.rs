@@ -53,14 +53,14 @@ impl<T: Transport> Card<T> {
         })
     }
 
-    /// What positions are, of every channel.
+    /// The scale of every channel.
     pub fn scales(&mut self) -> Result<Vec<Scale>, HostError> {
         let channels = 0..self.identity().channels;
         let all = channels.map(|channel| Ok(self.scale(channel)?.0));
         all.collect()
     }
 
-    /// What is to be told about that.
+    /// Notes about contradictions.
     pub fn scale_notes(&mut self) -> Result<Vec<String>, HostError> {
         let channels = 0..self.identity().channels;
         let notes = channels.map(|channel| Ok(self.scale(channel)?.1));

@@ -4,14 +4,14 @@ use endat_driver::Range;
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// What a position is: where its turns are, what a measuring step is, after how many it begins anew.
+/// The scale of a position: its measuring step, the bits of its turns, and its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
     /// Turns and the angle within a turn.
     Rotary {
         /// Measuring steps per revolution.
         steps_per_turn: u64,
-        /// Turns that are told apart, 1 where none are counted: behind the last one the position is 0 again.
+        /// Number of turns that the encoder counts, 1 if it counts none; the position is 0 again after the last.
         turns: u64,
         /// Lowest bit that counts turns, where unused bits are below; else turns are counted in whole `steps_per_turn`.
         turns_at: Option<u32>,
@@ -23,7 +23,7 @@ pub enum Scale {
     },
     /// A place on a scale, whose measuring step nobody says.
     Counted,
-    /// Counts of which nobody says where they begin anew: none is counted on, and two have no distance.
+    /// Counts with an unknown range: they are not counted on, and two of them have no difference.
     Counts {
         /// Lowest bit that counts turns, where that is known at least.
         turns_at: Option<u32>,
@@ -64,7 +64,7 @@ impl Scale {
         }
     }
 
-    /// What a range means, if it says something.
+    /// The scale of a range, if it is known.
     pub const fn of_range(range: Range) -> Option<Self> {
         match range {
             Range::Unknown => None,
@@ -81,12 +81,12 @@ impl Scale {
         }
     }
 
-    /// Whether positions can be counted on and compared: it is known where they begin anew, if at all.
+    /// Whether the range is known, so that positions can be counted on and compared.
     pub const fn is_known(&self) -> bool {
         !matches!(self, Self::Counts { .. })
     }
 
-    /// Measuring steps after which positions begin anew: those of all turns that are told apart. None of a scale, and where nobody says.
+    /// Measuring steps after which positions wrap: those of all turns. None for a linear scale and for an unknown range.
     pub const fn range(&self) -> Option<u64> {
         match *self {
             Self::Rotary {
@@ -211,7 +211,7 @@ impl Scale {
         }
     }
 
-    /// The value in units that is 0 again; none of a scale, and where nobody says.
+    /// The value in units at which a turn wraps; none for a linear scale and for an unknown range.
     pub fn wraps_at(&self) -> Option<f64> {
         matches!(self, Self::Rotary { .. }).then_some(360.0)
     }
@@ -222,7 +222,7 @@ impl Scale {
         self == other || is_scale(self) && is_scale(other)
     }
 
-    /// Turns that are told apart; none where there are no turns, and where nobody says.
+    /// Number of turns that the encoder counts; none for a linear scale and for an unknown range.
     pub const fn turns(&self) -> Option<u64> {
         match *self {
             Self::Rotary { turns, .. } => Some(turns),
@@ -296,7 +296,7 @@ mod tests {
         let half = scale.convert(7 << 24 | 1 << 16);
         assert_eq!((half.value, half.turns), (180.0, Some(7)));
         assert_eq!(scale.range(), Some(1 << 33));
-        // An encoder that counts more turns than are told apart.
+        // An encoder that counts more turns than the scale has.
         assert_eq!(scale.steps(1 << 40 | 5), 5);
         assert!(scale.is_possible(last) && !scale.is_possible(last | 1 << 17));
         assert!(scale.fits(last) && !scale.fits(1 << 40));

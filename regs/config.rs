@@ -5,7 +5,7 @@ use crate::protocol::POSITION_COMMANDS;
 use crate::{field, word, Access, Block, BLOCK_STRIDE, CONFIG_BASE};
 use Access::ReadWrite;
 
-/// What a position of a channel is, as far as the host knows it from the card.
+/// Kinds of range of a channel's position.
 pub mod range {
     use super::codes;
 

@@ -54,7 +54,7 @@ pub fn explain_cause(name: &str) -> Option<String> {
     other.map(|(_, means)| (*means).to_owned()).or_else(known)
 }
 
-/// What makes known what positions of a channel are.
+/// Tells the user how to give the range of a channel.
 fn remedy(channel: usize) -> String {
     format!("give connect() ranges={{{channel}: \"SINGLE+MULTI\"}} (bits of the angle and bits that count turns, as in {{{channel}: \"17+16\"}}) or {{{channel}: \"linear\"}}")
 }
@@ -143,7 +143,7 @@ impl NativeCard {
         Ok(all)
     }
 
-    /// What positions of each channel are.
+    /// The scale of each channel.
     fn scales<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let scales = self.call(py, |w| {
             w.scales = w.card.scales()?;
@@ -171,7 +171,7 @@ impl NativeCard {
         Ok(all)
     }
 
-    /// What was found out about positions that the configuration has wrong.
+    /// Where a name plate contradicts the configuration.
     fn scale_notes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         self.call(py, |w| w.card.scale_notes())
     }

@@ -1,4 +1,4 @@
-//! What a position is: turns and an angle, or a place on a scale.
+//! The range of a position: turns and an angle, or a place on a scale.
 
 use crate::card::Card;
 use crate::error::Error;
@@ -8,7 +8,7 @@ use crate::result::signed;
 use embedded_hal::delay::DelayNs;
 use endat_regs::{range, Protocol};
 
-/// What the position of a channel is.
+/// The range of a channel's position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Range {
     /// The configuration does not say; an EnDat encoder's name plate may.
@@ -93,7 +93,7 @@ impl Range {
         }
     }
 
-    /// What the words `config<n>.frame`, `timing` and `limits` of a channel say.
+    /// Decodes the words `config<n>.frame`, `timing` and `limits` of a channel.
     pub fn of_words([frame, timing, limits]: [u32; 3], protocol: Protocol) -> Self {
         let kind = field!(CHANNEL_CONFIG.limits.range).of(limits) as u8;
         let bits = field!(CHANNEL_CONFIG.frame.position_bits).of(frame);
@@ -115,7 +115,7 @@ impl Range {
         }
     }
 
-    /// Where turns and angle are; none of a scale, and if nobody says.
+    /// The bits of turns and angle; none for a scale and for an unknown range.
     pub const fn turns(self) -> Option<Turns> {
         match self {
             Self::Rotary(turns) => Some(turns),
@@ -123,7 +123,7 @@ impl Range {
         }
     }
 
-    /// Steps from one position to another: the shorter way round, or along the scale; none if nobody says which.
+    /// Steps from one position to another: the shorter way round, or along the scale; none for an unknown range.
     pub const fn difference(self, from: u64, to: u64) -> Option<i64> {
         match self {
             Self::Rotary(turns) => Some(turns.difference(from, to)),
@@ -134,7 +134,7 @@ impl Range {
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {
-    /// What the position of a channel is, as the card's configuration says.
+    /// Reads the range of a channel from the card's configuration.
     pub fn read_range(&mut self, channel: usize) -> Result<Range, Error<L::Error>> {
         if channel >= self.facts().channels {
             return Err(Error::Argument);

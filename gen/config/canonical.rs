@@ -211,7 +211,7 @@ fn of_service(service: &ServiceParts) -> Vec<String> {
     lines
 }
 
-/// What the position is; nothing if that is not said.
+/// The range of the position, if the file gives one.
 fn of_range(channel: &ChannelConfig) -> Option<String> {
     match channel.turn_bits() {
         Some([single, multi]) => Some(format!("turns {single} {multi}")),

@@ -37,7 +37,7 @@ pub type LineKeys = BTreeMap<&'static str, Option<(String, At<u64>)>>;
 
 pub fn read_line_keys(table: &Table<'_, '_>, system_hz: Option<u64>) -> LineKeys {
     let written = of_lines().filter_map(|key| {
-        // A number that is none at all is answered with what goes with every cable.
+        // The answer to a value that is no number is the range that fits every cable.
         let value = table.integer_or(
             key,
             &limits(key.name, system_hz),
@@ -199,8 +199,7 @@ pub fn read_encoder(table: &Table<'_, '_>) -> Option<String> {
     None
 }
 
-/// What the position is, if that is said, and where; none if what is wrong leaves nothing to judge. `width`: bits of the position, where
-/// angle and turns share it.
+/// Reads the range of a position, and the lines of its keys; none if it has been refused. Angle and turns share `width` bits.
 fn read_range(
     table: &Table<'_, '_>,
     protocol: Protocol,
@@ -225,7 +224,7 @@ fn read_range(
         &SINGLE_TURN_BITS,
         match (turns_at, rest) {
             (Some(most), _) => usual_single.at_most(most, ""),
-            // What is left.
+            // The angle has the rest of the position.
             (None, Some(rest)) => Limits::new(rest..=rest),
             (None, None) => usual_single,
         },
@@ -253,7 +252,7 @@ fn read_range(
     let range = match (single, multi) {
         (None, _) if has(&SINGLE_TURN_BITS) => return None,
         (None, None) => is_linear.then_some(PositionRange::Linear),
-        // Without bits of its own the angle has the rest.
+        // Without single_turn_bits the angle has the rest of the position.
         (single, multi) => Some(PositionRange::Rotary {
             single_turn_bits: single.map(|at| at.value),
             multi_turn_bits: multi.map_or(0, |at| at.value),

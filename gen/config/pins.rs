@@ -107,7 +107,7 @@ pub(super) fn read_board(
         table.know(&[&BOARD_NAME, &BOARD_FILE]);
         return Some(other.clone());
     }
-    // Not asked for where it does not stand: nobody can guess a file.
+    // The key counts as known even if it is absent: nobody can guess a file.
     table.know(&[&BOARD_FILE]);
     if table.has(BOARD_FILE.name) {
         let file = table.string(&BOARD_FILE)?;

@@ -9,7 +9,7 @@ use toml::de::DeTable;
 /// The file's top level, of a form with these keys; complaints go to `source`.
 pub fn parse<'t>(source: &Source<'t>, keys: &[&Key]) -> Option<DeTable<'t>> {
     let (document, errors) = DeTable::parse_recoverable(source.text());
-    // Keys below a second head in single brackets do not stand there twice.
+    // Keys below a second [channel] are no duplicates.
     let is_single = |error: &toml::de::Error| {
         let line = error.span().map_or(0, |span| source.line(span.start));
         is_channel(source, line)

@@ -32,7 +32,7 @@ pub(super) struct Stray {
     pub(super) name: String,
     /// Keys that its table may have.
     pub(super) known: Vec<&'static str>,
-    /// The other keys that stand in it.
+    /// The other keys in that table.
     pub(super) written: Vec<String>,
     /// It is the heading of a table.
     pub(super) is_table: bool,
@@ -197,7 +197,7 @@ impl<'s, 't> Table<'s, 't> {
         self.integer_or(key, limits, limits)
     }
 
-    /// The same, where other limits are told.
+    /// The same, but a message gives other limits.
     pub fn integer_or(&self, key: &'static Key, limits: &Limits, told: &Limits) -> Option<At<u64>> {
         self.ask(key, Kind::Integer(limits.clone()));
         let key = key.name;

@@ -1,4 +1,4 @@
-//! Keys that a table does not have, and what is said of a file when it has been read.
+//! Unknown keys, and the complaints about a whole file.
 
 use super::key::head;
 use super::reader::{Source, Stray};
@@ -11,7 +11,7 @@ impl Source<'_> {
     pub fn into_diagnostics(self) -> Vec<Diagnostic> {
         // Only now all tables have been read: a key may belong to another one.
         let strays = self.strays.take();
-        // What stands below a misspelt heading is missing, and much follows from it: there is nothing else to say before it is mended.
+        // A misspelt heading hides all keys below it. Other complaints would follow from that, so it is reported alone.
         let is_heading = |stray: &Stray| {
             let known = stray.known.iter().copied();
             stray.is_table && stray.name == stray.key && guess(&stray.key, known).is_some()
@@ -25,7 +25,7 @@ impl Source<'_> {
             self.complain_line(stray.line, text);
         }
         let mut all = self.diagnostics.into_inner();
-        // So does from a table that is none.
+        // A value in the place of a table hides keys, too.
         let is_none = |d: &Diagnostic| d.text.contains(", must be a table headed ");
         if all.iter().any(is_none) {
             all.retain(is_none);
@@ -36,7 +36,7 @@ impl Source<'_> {
         all
     }
 
-    /// What is said of such a key: what it may have been meant to be, or where it belongs.
+    /// The complaint about such a key: a suggestion, or the table that it belongs to.
     fn stray(&self, stray: &Stray) -> String {
         let Stray { key, known, .. } = stray;
         let asked = self.asked.borrow();
@@ -64,7 +64,7 @@ impl Source<'_> {
     }
 }
 
-/// Where a key of this table stands.
+/// Names the place of a table in the file.
 fn home(table: &str) -> String {
     match table {
         "" => "to the top of the file, above all tables".into(),

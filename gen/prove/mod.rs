@@ -65,7 +65,7 @@ const ANYWHERE_CYCLES: usize = 3;
 /// How far a counterexample is looked for where the induction finds none that begins at the start values.
 const SEARCH_CYCLES: usize = 12;
 
-/// What the inputs of a part may be, unless a claim says less.
+/// The inputs that a proof allows, unless a claim allows less.
 const ANYTHING: &str = "every input may be anything in every cycle";
 
 /// What is proved.

@@ -80,7 +80,7 @@ pub struct Row {
 pub struct PartReport {
     /// Its module.
     pub module: String,
-    /// What its inputs may be.
+    /// The inputs that the proof allows.
     pub inputs: &'static str,
     /// Time for the properties that begin with the start values.
     pub start_seconds: f64,

@@ -35,7 +35,7 @@ pub struct About {
 /// Lowest bit of turns where a description of counts does not tell: those of recordings that have been made before it did.
 const TURNS_AT: u32 = 24;
 
-/// What positions are, as numbers.
+/// Writes a scale as JSON.
 fn scale(scale: &Scale) -> Value {
     let mut object = json!({"unit": scale.convert(0).unit});
     match *scale {
@@ -63,7 +63,7 @@ fn scale(scale: &Scale) -> Value {
     object
 }
 
-/// What positions are, of what a channel of a description says.
+/// Reads the scale of a channel from a description.
 pub fn scale_of(object: &Value) -> Option<Scale> {
     let bit = |name: &str| {
         let told = object[name].as_u64().and_then(|n| n.try_into().ok());

@@ -262,7 +262,7 @@ impl Derived {
         Ok(derived)
     }
 
-    /// Refuses what counts on, or compares, positions of which nobody says where they begin anew.
+    /// Refuses steps that count on or compare positions with an unknown range.
     fn check_known(&self, spec: &str) -> Result<(), GenError> {
         let counts = |step: &Step| matches!(step, Step::Same | Step::Unwrap(_) | Step::Velocity(_));
         let is_needed = self.channels.1.is_some() || self.steps.iter().any(counts);

@@ -69,7 +69,7 @@ pub struct Recorder {
     begin: Option<u64>,
     written: u64,
     span_s: f64,
-    /// Positions that their scale leaves no room for, of each channel.
+    /// Positions of each channel with more bits than its scale has.
     impossible: Vec<u64>,
 }
 
@@ -129,7 +129,7 @@ impl Recorder {
         self.span_s
     }
 
-    /// What is to be told of positions that their scale leaves no room for.
+    /// Messages about positions with more bits than their scale has.
     pub fn impossible(&self) -> impl Iterator<Item = String> + '_ {
         let counts = self.impossible.iter().enumerate();
         counts.filter(|(_, count)| **count > 0).map(|(n, count)| {

@@ -25,7 +25,7 @@ pub struct Track {
     in_windows: u64,
     windows: u64,
     worst: f64,
-    /// Values follow each other: they do not begin anew anywhere that nobody knows.
+    /// The range is known, so values are counted on.
     is_counted: bool,
     /// Distances from the parabola of each window.
     pub histogram: Histogram,
@@ -174,7 +174,7 @@ pub struct ChannelStats {
     pub tally: Tally,
     /// One measuring step in its unit, if the file says so.
     pub step: Option<f64>,
-    /// Why drift and noise are not calculated, and the remedy.
+    /// The reason why drift and noise are missing, and the remedy.
     pub unknown: Option<String>,
 }
 

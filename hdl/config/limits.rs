@@ -73,7 +73,7 @@ impl fmt::Display for Limits {
     }
 }
 
-/// What `clock_hz` may be on the line of any protocol.
+/// Limits of `clock_hz` over all protocols.
 pub fn clock_limits() -> Limits {
     let slowest = ENDAT_HZ_MIN.min(protocols::CLOCK_HZ_MIN);
     Limits::new(slowest..=ENDAT_HZ_MAX)
@@ -116,7 +116,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
     }
 }
 
-/// What a key may be beside every cable, clock and other key that there may be.
+/// Limits of a key that fit every value of the other keys.
 pub fn narrowest(key: &str, system_hz: Option<u64>) -> Limits {
     let slow = system_hz.unwrap_or(SYSTEM_HZ_MAX);
     let whole = limits(key, system_hz);

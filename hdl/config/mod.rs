@@ -112,7 +112,7 @@ pub struct ChannelSpec {
     pub spoken: Spoken,
     /// Which triggers the channel takes; if all channels say nothing about it, every one takes all, and there is no logic for another choice.
     pub trigger: Option<OwnTrigger>,
-    /// What the position is, for the host; `None` = an EnDat encoder may say it, others cannot.
+    /// The range of the position, for the host; `None` = unknown, unless an EnDat encoder's name plate gives it.
     pub range: Option<PositionRange>,
 }
 

@@ -4,7 +4,7 @@ use super::*;
 use endat_regs::protocol::MAX_POSITION_BITS;
 use endat_regs::range;
 
-/// What the position of a channel is, if that is said.
+/// The range of a channel's position, if the file gives one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PositionRange {
     /// Turns and the angle within a turn.
@@ -69,7 +69,7 @@ pub(super) fn check_range(check: &mut Check<'_>, config: &ChannelConfig) {
     let Some([single, multi]) = config.turn_bits() else {
         return;
     };
-    // What is wrong itself must not make something else wrong.
+    // A value that was refused must not cause a second complaint.
     if !limits("position_bits", None).contains(config.position_bits.into()) {
         return;
     }
@@ -87,7 +87,7 @@ pub(super) fn check_range(check: &mut Check<'_>, config: &ChannelConfig) {
         check.within(key, value, &limits)
     };
     let are_good = [
-        // Without bits of its own the angle has those that turns leave.
+        // Without single_turn_bits the angle has the bits that turns leave.
         single == 0 || within("single_turn_bits", single, most_single),
         within("multi_turn_bits", multi, most_multi),
     ];

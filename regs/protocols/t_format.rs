@@ -15,7 +15,7 @@ use Access::{ReadOnly, Strobe};
 /// Resets count only so many times in a row.
 pub const RESETS_IN_A_ROW: u32 = 10;
 
-/// Lowest bit of a position that counts turns: 24 bits of angle are below it, of which an encoder uses the lower ones.
+/// Lowest bit of a position that counts turns. An encoder uses the lower ones of the 24 bits below it.
 pub const TURNS_AT: u32 = 24;
 
 /// What card and host agree on of T-format.

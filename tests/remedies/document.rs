@@ -78,7 +78,7 @@ impl Document {
         self.clone().part(table).is_some()
     }
 
-    /// What stands below a key.
+    /// The value of a key.
     pub fn get(&self, path: &str) -> Option<String> {
         let (table, key) = split(path);
         let mut copy = self.clone();
@@ -112,7 +112,7 @@ impl Document {
         }
     }
 
-    /// Removes a key, or every one of that name that stands in a table twice.
+    /// Removes a key, duplicates included.
     pub fn remove(&mut self, path: &str) {
         let (table, key) = split(path);
         if let Some(part) = self.part(table) {

@@ -48,7 +48,7 @@ const PROSE: &[&str] = &[
     "`endat-gen boards --show NAME` prints one to start from",
 ];
 
-/// What a message is about: a key, or a table.
+/// A message, taken apart: key or table, value, problem and remedy.
 struct Message<'d> {
     document: &'d Document,
     /// Key with its table.
@@ -266,7 +266,7 @@ impl Message<'_> {
         (0..items.len()).map(with).collect()
     }
 
-    /// Where a key that a remedy names stands, or would stand.
+    /// The path of a key that a remedy names, in the file or as it would be.
     fn place(&self, name: &str) -> String {
         if name == "it" {
             return self.path.clone();

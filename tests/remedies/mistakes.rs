@@ -43,7 +43,7 @@ fn ladder(low: u64, high: u64) -> Vec<u64> {
     all
 }
 
-/// What may be written for a key.
+/// An accepted value of a key.
 fn values(asked: &Asked) -> Vec<String> {
     let quoted = |word: &String| match asked.kind {
         Kind::Integer(_) => word.clone(),

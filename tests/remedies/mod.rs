@@ -59,7 +59,7 @@ fn kind(text: &str) -> String {
     kind
 }
 
-/// What a message is about, and what is wrong, without what is to be done.
+/// Subject and problem of a message, without the remedy.
 fn complaint(text: &str) -> (String, String) {
     let (subject, rest) = text.split_once(": ").unwrap_or(("", text));
     let path = subject.split(" = ").next().unwrap_or_default();
@@ -73,7 +73,7 @@ fn read(document: &Document) -> Vec<Diagnostic> {
         .unwrap_or_default()
 }
 
-/// What a walk has seen.
+/// The counts and findings of a walk.
 #[derive(Default)]
 struct Walk {
     /// How often a remedy of each form of words was followed.
@@ -160,7 +160,7 @@ impl Walk {
             self.mistakes += 1;
             for told in read(&document) {
                 let (path, problem) = match told.text.strip_prefix("not TOML: ") {
-                    // What is wrong with a line is seen from the remedy.
+                    // The remedy tells one problem of a line from another.
                     Some(rest) => ("not TOML".to_owned(), kind(rest)),
                     None => complaint(&told.text),
                 };

@@ -40,7 +40,7 @@ fn commands(command: &Command, words: &[String]) -> Vec<(Vec<String>, Command)> 
     }
 }
 
-/// What a run with these arguments is told.
+/// The messages of a run with these arguments.
 fn told(words: &[String], more: &[String]) -> String {
     let all: Vec<&str> = words.iter().chain(more).map(String::as_str).collect();
     let outcome = run(&all);
@@ -116,7 +116,7 @@ fn wanted(told: &str, option: &str) -> Option<(&'static str, Vec<String>)> {
     None
 }
 
-/// What is wrong with an option, without its value, and without what is to be done.
+/// The problem of an option, without value and remedy.
 fn problem(told: &str, option: &str) -> Option<String> {
     let is_it =
         |line: &&str| line.contains(&format!("{option} ")) || line.contains(&format!("{option}:"));

@@ -110,7 +110,7 @@ fn it_fails_on_every_broken_port_with_special_bits() {
     check_mutations("ssi-specials", &special(), SPECIAL_MUTATIONS);
 }
 
-/// Catches an encoder of the bench with a delay of its own, and a port that takes bits too soon for it.
+/// Catches a bench encoder that ignores the configured delay, and a port that takes bits too soon for it.
 #[test]
 fn the_bench_has_encoders_as_late_as_configured_and_passes() {
     let late =

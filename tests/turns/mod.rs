@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use std::fs;
 use std::time::Duration;
 
-/// A card with a T-format encoder of 17 bits and an SSI encoder, of which it knows no more than their names.
+/// A card with a T-format encoder of 17 bits and an SSI encoder, without ranges.
 const CARD: &str = include_str!("../data/t_format_turns/card.toml");
 const SAMPLE_HZ: f64 = 2_000.0;
 /// Turns in a second: a tenth of a turn from one sample to the next.
@@ -31,7 +31,7 @@ fn card(t_format: &str, ssi: &str) -> Project {
     parse("card.toml", &text).unwrap()
 }
 
-/// What the first rows of a card are, and its scales.
+/// The first rows of a card, and its scales.
 fn recorded(project: &Project, speed: f64, count: usize, said: &[&str]) -> (Vec<Scale>, Vec<Row>) {
     let config = VirtualConfig {
         speed,
@@ -109,7 +109,7 @@ fn t_format_turns_of_17_bits_are_counted_on_over_each_wrap() {
     }
 }
 
-/// Three turns that are counted, of 13 bits each: positions begin anew after eight turns.
+/// Turns of 13 bits, three bits that count them: positions wrap after eight turns.
 #[test]
 fn ssi_positions_are_counted_on_over_turns_and_over_the_last_of_them() {
     let project = card(

@@ -187,7 +187,7 @@ fn a_page_has_positions_plots_registers_parameters_and_recordings() {
         .iter()
         .map(|r| r["name"].as_str().unwrap());
     assert!(names.clone().any(|n| n == "service1.request"));
-    // What the search of the page looks through.
+    // The search of the page looks through the fields.
     let word = |name: &str| all.as_array().unwrap().iter().find(|r| r["name"] == name);
     let fields = &word("config0.frame").unwrap()["fields"];
     assert!(

@@ -154,7 +154,7 @@ fn value(rng: &mut Rng, asked: &Asked) -> Option<String> {
         Kind::Boolean => is_one_of(rng, 2).to_string(),
         Kind::Text if words.is_empty() => quoted(pick(rng, &TEXTS)),
         Kind::Text => quoted(pick(rng, &words)),
-        // A few in any order, of which one may come again.
+        // A few in any order; one may repeat.
         Kind::Texts if KEYS.iter().any(|k| k.name == asked.key && k.repeats) => {
             let some = (0..rng.in_range(0, 4)).map(|_| quoted(pick(rng, &words)));
             format!("[{}]", some.collect::<Vec<_>>().join(", "))

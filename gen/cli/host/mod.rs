@@ -46,7 +46,7 @@ pub struct PortArgs {
     baud: Option<String>,
 }
 
-/// What positions are, where card and name plates do not say it, or are wrong.
+/// Ranges given by the user, where card and name plates lack them or are wrong.
 #[derive(Args, Clone)]
 pub struct RangeArgs {
     /// What positions of a channel are, as its encoder's data sheet has it: 0=17+16 for 17 bits of angle and 16 that count turns, 1=linear for a scale [default: as the encoder or the card's configuration says]
@@ -55,7 +55,7 @@ pub struct RangeArgs {
 }
 
 impl RangeArgs {
-    /// What is said.
+    /// The parsed ranges.
     pub fn ranges(&self) -> Result<Ranges, GenError> {
         Ranges::parse(&self.range).map_err(told)
     }
@@ -79,14 +79,14 @@ impl Deref for RangedPort {
 }
 
 impl RangedPort {
-    /// What is said about its positions.
+    /// The ranges that the user has given.
     pub fn ranges(&self) -> Result<Ranges, GenError> {
         self.range.ranges()
     }
 
     /// Opens the link, finds out who answers, and lets it know what is said.
     pub fn open(&self) -> Result<AnyCard, GenError> {
-        // A word that is wrong is told at once.
+        // A wrong word is refused before the link is opened.
         let ranges = self.ranges()?;
         let mut card = self.port.open()?;
         card.set_ranges(ranges).map_err(told)?;
@@ -94,7 +94,7 @@ impl RangedPort {
     }
 }
 
-/// What positions are, of every channel; what is to be told about that is told.
+/// The scale of every channel; prints notes about contradictions.
 pub fn scales(card: &mut AnyCard) -> Result<Vec<Scale>, GenError> {
     let notes = card.scale_notes().map_err(told)?;
     notes.iter().for_each(|note| say(note));

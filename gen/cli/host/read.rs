@@ -86,7 +86,7 @@ pub fn verdict(reading: &Reading) -> String {
     }
 }
 
-/// What else was wrong with the frame of a channel that speaks this protocol: the primary cause hides it.
+/// Names the flags of a frame that its primary cause hides.
 fn also(reading: &Reading, protocol: Protocol) -> String {
     let others = reading.flag_names(protocol);
     let others: Vec<_> = others.filter(|f| *f != reading.cause_name()).collect();
@@ -201,7 +201,7 @@ mod tests {
         assert!(old.contains("is a trigger enabled"), "{old}");
     }
 
-    /// Catches a wrong CRC and an alarm that nobody is told of, since the frame had another length, too.
+    /// Catches a wrong CRC and an alarm that `read` hides because the frame had another length, too.
     #[test]
     fn what_the_primary_cause_hides_is_told() {
         let field = |name| RESULT.field("evidence", name).lsb;

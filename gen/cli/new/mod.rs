@@ -79,7 +79,7 @@ fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
     // Which of the usual ones; the next one where one does not go with the rest.
     let mut tried: BTreeMap<&str, usize> = BTreeMap::new();
     for question in QUESTIONS.iter().filter(|q| given.contains_key(q.name)) {
-        // What may be left out may be empty.
+        // An optional key may have an empty answer.
         if given[question.name].is_empty() && question.may_be_empty() {
             continue;
         }

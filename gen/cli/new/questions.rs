@@ -128,7 +128,7 @@ fn of_board(answers: &Answers, own: fn(&crate::board::Start) -> u64, usual: &[u6
     all.map(|n| n.to_string()).collect()
 }
 
-/// What was answered, if it is a number.
+/// The answer as a number, if it is one.
 fn value(told: &str) -> Option<u64> {
     number("", told, 0..=u64::MAX).ok()
 }

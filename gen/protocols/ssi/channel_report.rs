@@ -31,7 +31,7 @@ pub struct SsiReport {
     pub parity: String,
     /// It comes twice, and both are compared.
     pub twice: bool,
-    /// Bits before the position that are none of it.
+    /// Special bits before the position.
     pub bits_before: Vec<&'static str>,
     /// Bits after it.
     pub bits_after: Vec<&'static str>,

@@ -38,7 +38,7 @@ const FAULTS: [&str; 9] = [
 /// The causes that special bits may be, in the order of the bits of an alarm.
 const ALARMS: [u64; 3] = [cause::ALARM, cause::POWER_FAIL, cause::NOT_VALID];
 
-/// What an encoder sends for these special bits, with such alarms.
+/// The special bits that an encoder with these alarms sends.
 fn extras(specials: &Specials, alarms: u16) -> Vec<Extra> {
     let extra = |special: Special| match special {
         Special::ParityEven => Extra::Parity(false),
@@ -235,7 +235,7 @@ mod tests {
     use super::*;
     use crate::config::parse;
 
-    /// Catches an encoder with a delay of its own, and a cable that is longer than its channel takes.
+    /// Catches an encoder that ignores the configured delay, and a cable longer than the channel takes.
     #[test]
     fn virtual_encoder_answers_as_late_as_its_channel_is_configured() {
         for (delay_ns, cable_m, way_ns) in [(150, 3, 15), (400, 30, 50)] {

@@ -1,7 +1,7 @@
 //! Proofs of bus fronts, for every master within the rules of its bus and for ever, and of the ring of configuration words, for every front.
 //!
-//! These proofs look into the blocks inside a module: they are put into the module after yosys has made it flat. Each text has what is
-//! promised first; from [`INSIDE`] on it has what holds between front, word and bank, which the induction needs.
+//! These proofs use registers of the blocks inside a module, so yosys flattens the module first. Each text begins with the promises;
+//! from [`INSIDE`] on it has the invariants between front, word and bank that the induction needs.
 
 use super::report::{Row, Verdict};
 use super::tools::{self, Answer};
@@ -31,11 +31,11 @@ const BEFORE: &str = include_str!("before.vh");
 const FOLLOWS: &str = include_str!("follows.vh");
 const TRANSFER: &str = include_str!("transfer.vh");
 
-/// What is claimed of a block.
+/// Properties of a block, and where they hold.
 pub(super) struct Claim {
     /// Type of the block.
     pub type_name: &'static str,
-    /// What its inputs may be.
+    /// The inputs that the proof allows, in words.
     pub inputs: &'static str,
     texts: &'static [&'static str],
     /// Properties whose induction takes as many cycles as the longest wait.
@@ -79,21 +79,21 @@ pub(super) const CLAIMS: [Claim; 5] = [
     },
 ];
 
-/// Types of blocks with a claim, and what is promised of each.
+/// Types of blocks with a claim, and the properties of each.
 pub fn claimed() -> Vec<(&'static str, Vec<Property>)> {
     let all = CLAIMS.iter();
     all.map(|claim| (claim.type_name, claim.properties()))
         .collect()
 }
 
-/// What is claimed of a module.
+/// The claim about a module, if there is one.
 pub(super) fn claim_of(module: &Module) -> Option<&'static Claim> {
     let mut all = CLAIMS.iter();
     all.find(|claim| claim.type_name == module.type_name)
 }
 
 impl Claim {
-    /// What is promised, in words, and last what holds inside.
+    /// The promises, and last the invariant inside.
     pub fn properties(&self) -> Vec<Property> {
         let text = self.texts.concat();
         let mut found = properties(&text);
@@ -205,8 +205,8 @@ fn lines(text: &str, change: impl Fn(&str) -> Option<String>) -> String {
     kept.map(|line| line + "\n").collect()
 }
 
-/// What each register of a module and those inside begins with where the text does not say it: a card without start values begins
-/// with a reset. Path in the flat module, width and value.
+/// Start values of the registers of a module and of those inside, for a card without start values in its text: it begins with a reset.
+/// Path in the flat module, width and value.
 fn start_values(design: &Design, top: usize) -> Vec<(String, usize, u128)> {
     if design.has_initial_values {
         return vec![];

@@ -31,17 +31,17 @@ pub struct Head {
     pub derived: Vec<DerivedColumn>,
     /// What it is of; null if it does not say.
     pub about: Value,
-    /// What positions are, of every channel, as far as that is known.
+    /// The scale of every channel, if it is known.
     pub scales: Vec<Option<Scale>>,
 }
 
 impl Head {
-    /// What positions of a channel are, as the file says.
+    /// The scale of a channel that the file gives.
     fn own_scale(&self, channel: usize) -> Option<Scale> {
         super::about::scale_of(&self.about["channels"][channel])
     }
 
-    /// What positions of a channel are; none if that is not known.
+    /// The scale of a channel, if it is known.
     pub fn scale(&self, channel: usize) -> Option<Scale> {
         self.scales.get(channel).copied().flatten()
     }
@@ -191,10 +191,10 @@ pub struct Reader {
     order: Order,
     /// The row that is taken.
     now: Measurement,
-    /// What is said about positions, whatever the files say.
+    /// Ranges given by the user; they win over those of the files.
     said: Ranges,
     channels: Vec<turns::Channel>,
-    /// What positions are as the first file says, whose columns are made so.
+    /// Scales in the first file, which its columns were written with.
     own_scales: Vec<Option<Scale>>,
     /// Units of the first file.
     units: Vec<String>,

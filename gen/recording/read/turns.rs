@@ -34,9 +34,9 @@ impl TextTurns {
 /// A channel of a file.
 #[derive(Clone, Debug, Default)]
 pub struct Channel {
-    /// What its positions are, if that is known.
+    /// Its scale, if it is known.
     scale: Option<Scale>,
-    /// The same where turns begin at a bit of their own: text that does not say what it is of may have either.
+    /// Its scale if turns have a fixed bit, as in T-format: text without a description may have either.
     apart: Option<Scale>,
     /// The user has said so: positions must fit.
     is_said: bool,
@@ -84,12 +84,12 @@ impl Channel {
         })
     }
 
-    /// What its positions are, if that is known.
+    /// Its scale, if it is known.
     pub fn scale(&self) -> Option<Scale> {
         self.scale
     }
 
-    /// The position of a cell, counted on if it is known where it begins anew.
+    /// The position of a cell, counted on if its range is known.
     pub(super) fn position(&mut self, cell: &Cell, unit: &str) -> Result<Option<f64>, String> {
         let (Some(mut scale), Some(raw)) = (self.scale, cell.raw) else {
             let turns = cell.turns.unwrap_or(0);

@@ -26,7 +26,7 @@ pub struct SsiSpec {
     pub twice: bool,
     /// What stands behind each.
     pub parity: Parity,
-    /// Bits before the position that are none of it.
+    /// Special bits before the position.
     pub before: Specials,
     /// Bits after the position, and after its parity bit.
     pub after: Specials,

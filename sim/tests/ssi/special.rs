@@ -263,7 +263,7 @@ fn an_alarm_comes_before_a_lost_trigger() {
         u128::from(lost | cause::flag(cause::ALARM))
     );
     assert_eq!(run.fresh(), None);
-    // No bit has come, so none of them says anything.
+    // No bit has come, so no special bit is looked at.
     let valid = EncoderConfig {
         defect: Defect::StuckLow,
         ..run.encoder.config.clone()
@@ -308,7 +308,7 @@ fn port_waits_out_the_recovery_time_of_an_encoder_that_keeps_its_last_bit() {
         assert_eq!(run.get("position_valid"), 0);
         assert_eq!(run.get("cause"), u128::from(cause::RECOVERY_TOO_LONG));
     }
-    // An open plug looks like a position of ones, but for a special bit. With an end that is LOW it has a cause.
+    // Only a special bit tells an open plug from a position of ones. With a LOW end it has a cause.
     let open = EncoderConfig {
         defect: Defect::Silent,
         position_bits: 12,

@@ -23,7 +23,7 @@ struct Frames {
     waits_us: [u64; 2],
     rounds: usize,
     seed: u64,
-    /// What the port is made for.
+    /// The channel that the port serves.
     asked: SsiSpec,
 }
 

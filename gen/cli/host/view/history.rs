@@ -127,7 +127,7 @@ pub fn names(bits: u64) -> Vec<&'static str> {
 }
 
 impl History {
-    /// Of channels with these scales. Velocity and difference are those of positions of which is known where they begin anew.
+    /// Keeps channels with these scales. Velocity and difference need a known range.
     pub fn new(scales: &[Scale]) -> Self {
         let mut traces = Vec::new();
         for (n, scale) in scales.iter().enumerate() {
@@ -381,7 +381,7 @@ mod tests {
         assert!((at(2) - 3240.0).abs() < 0.01 && at(3).is_nan());
     }
 
-    /// Catches a velocity, or a difference, of positions of which nobody knows where they begin anew.
+    /// Catches a velocity or a difference of positions with an unknown range.
     #[test]
     fn counts_that_nobody_explains_have_no_velocity_and_no_difference() {
         let row = |position: u64| {
