@@ -86,7 +86,7 @@ pub struct Plugged {
 /// What can be wrong with an encoder of a virtual card.
 pub trait OtherFaults: Send {
     /// Faults that it knows, in words.
-    fn known(&self) -> &'static [&'static str];
+    fn known(&self) -> Vec<String>;
 
     /// Makes one; none if there is no such fault.
     fn make(&mut self, encoder: &mut dyn OtherEncoder, deed: Deed) -> Option<()>;

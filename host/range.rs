@@ -31,6 +31,15 @@ pub fn refusal(channel: usize) -> String {
     format!("{why}; give --range {channel}=SINGLE+MULTI (bits of the angle and bits that count turns, as in {channel}=17+16) or --range {channel}=linear")
 }
 
+/// Some positions of a channel have bits outside their range.
+pub fn too_small(channel: usize, count: u64, scale: &Scale) -> String {
+    let positions = match count {
+        1 => "a position has".to_owned(),
+        _ => format!("{count} positions have"),
+    };
+    format!("channel {channel}: {positions} bits outside {scale}: the encoder uses more; give --range {channel}=SINGLE+MULTI as its data sheet has it")
+}
+
 impl Ranges {
     /// Parses the texts of `--range`.
     pub fn parse(texts: &[String]) -> Result<Self, HostError> {

@@ -118,34 +118,25 @@ impl Scale {
         }
     }
 
-    /// Whether the bits between angle and turns are 0; if not, the encoder uses more of them than the scale has.
-    pub const fn is_possible(&self, position: u64) -> bool {
+    /// Whether a position has no bit outside those of the angle and of the turns; if it has, the encoder uses more of them than the scale has.
+    pub const fn fits(&self, position: u64) -> bool {
         match *self {
             Self::Rotary {
                 steps_per_turn,
-                turns_at: Some(at),
-                ..
-            } => position & below(at) < steps_per_turn,
-            _ => true,
-        }
-    }
-
-    /// The same, and no bit is above those of all turns.
-    pub const fn fits(&self, position: u64) -> bool {
-        let range = match *self {
-            Self::Rotary { turns_at: None, .. } => self.range(),
-            Self::Rotary {
                 turns,
                 turns_at: Some(at),
-                ..
-            } => turns.checked_shl(at),
-            _ => None,
-        };
-        let is_below = match range {
-            Some(range) => position < range,
-            None => true,
-        };
-        self.is_possible(position) && is_below
+            } => {
+                let turn = match position.checked_shr(at) {
+                    Some(turn) => turn,
+                    None => 0,
+                };
+                position & below(at) < steps_per_turn && turn < turns
+            }
+            _ => match self.range() {
+                Some(range) => position < range,
+                None => true,
+            },
+        }
     }
 
     /// A position in units.
@@ -298,8 +289,8 @@ mod tests {
         assert_eq!(scale.range(), Some(1 << 33));
         // An encoder that counts more turns than the scale has.
         assert_eq!(scale.steps(1 << 40 | 5), 5);
-        assert!(scale.is_possible(last) && !scale.is_possible(last | 1 << 17));
-        assert!(scale.fits(last) && !scale.fits(1 << 40));
+        assert!(scale.fits(last) && !scale.fits(last | 1 << 17));
+        assert!(!scale.fits(1 << 40));
         assert!(!Scale::singleturn(20).fits(1 << 20));
     }
 

@@ -225,6 +225,49 @@ fn no_file_is_replaced_and_no_answer_is_made_up() {
     assert_eq!(run(&["new", "--yes", &path, "--name", "a\"b"]).exit_code, 2);
 }
 
+/// Catches an SSI encoder that `new` cannot describe, and a complaint about a key that stands elsewhere.
+#[test]
+fn what_the_data_sheet_of_an_ssi_encoder_says_is_asked_for() {
+    let new = |protocol: &str, more: &[&str]| {
+        let first = ["new", "-", "--yes", "--protocol", protocol];
+        run(&[&first[..], more].concat())
+    };
+    let given = [
+        ["--code", "gray"],
+        ["--parity", "even"],
+        ["--bits-before", "ignored, shown"],
+        ["--bits-after", "power_fail"],
+        ["--twice", "true"],
+    ]
+    .concat();
+    let made = new("ssi", &given).stdout;
+    for line in [
+        "code = \"gray\"",
+        "parity = \"even\"",
+        "bits_before = [\"ignored\", \"shown\"]",
+        "bits_after = [\"power_fail\"]",
+        "twice = true",
+        "end_low = true",
+    ] {
+        assert!(made.contains(&format!("\n{line}\n")), "{line}: {made}");
+    }
+    for (protocol, option, value, told) in [
+        ("ssi", "--twice", "yes", "channel.twice = yes: is neither"),
+        ("ssi", "--clock-hz", "1", "channel.clock_hz = 1: "),
+        ("endat", "--clock-hz", "1", "endat.clock_hz = 1: "),
+        (
+            "t_format",
+            "--multi-turn-bits",
+            "16",
+            "give --single-turn-bits, too",
+        ),
+    ] {
+        let refused = new(protocol, &[option, value]);
+        assert_eq!(refused.exit_code, 2, "{refused:?}");
+        assert!(refused.messages[0].contains(told), "{refused:?}");
+    }
+}
+
 /// Catches a board that the help offers and the command refuses, and a remedy that it refuses again.
 #[test]
 fn board_goes_with_every_bus_or_the_error_names_buses_that_have_one() {

@@ -276,8 +276,8 @@ impl Derived {
         let position = |n: usize| {
             let cell = row.cells.get(n)?;
             let position = cell.position.filter(|_| cell.fresh)?;
-            let is_possible = self.scale.is_possible(position);
-            is_possible.then(|| self.scale.steps(position))
+            let fits = self.scale.fits(position);
+            fits.then(|| self.scale.steps(position))
         };
         let range = self.scale.range();
         let steps = match self.channels {

@@ -59,8 +59,8 @@ impl Counter {
     /// The position of a channel, counted on.
     pub fn position(&mut self, channel: usize, raw: u64) -> Option<f64> {
         let (scale, turns) = (self.scales.get(channel)?, self.turns.get_mut(channel)?);
-        let is_possible = scale.is_possible(raw);
-        is_possible.then(|| scale.value(turns.step(scale.steps(raw))))
+        let fits = scale.fits(raw);
+        fits.then(|| scale.value(turns.step(scale.steps(raw))))
     }
 
     /// A row.

@@ -10,6 +10,7 @@ use super::picture::{Drawing, Picture};
 use super::sheet::Format;
 use crate::error::GenError;
 use endat_host::feed::Row;
+use endat_host::range;
 use std::io;
 
 /// When a file is ended and the next one begun.
@@ -132,10 +133,9 @@ impl Recorder {
     /// Messages about positions with more bits than their scale has.
     pub fn impossible(&self) -> impl Iterator<Item = String> + '_ {
         let counts = self.impossible.iter().enumerate();
-        counts.filter(|(_, count)| **count > 0).map(|(n, count)| {
-            let scale = &self.wishes.layout.scales[n];
-            format!("channel {n}: {count} positions have bits above the angle of {scale}: the encoder uses more; give --range {n}=SINGLE+MULTI as its data sheet has it")
-        })
+        counts
+            .filter(|(_, count)| **count > 0)
+            .map(|(n, count)| range::too_small(n, *count, &self.wishes.layout.scales[n]))
     }
 
     /// The drawing.
@@ -212,7 +212,7 @@ impl Recorder {
         self.span_s = row.cycles as f64 / self.system_hz;
         let cells = row.cells.iter().zip(&self.wishes.layout.scales);
         for ((cell, scale), count) in cells.zip(&mut self.impossible) {
-            let is_impossible = |position: u64| cell.fresh && !scale.is_possible(position);
+            let is_impossible = |position: u64| cell.fresh && !scale.fits(position);
             *count += u64::from(cell.position.is_some_and(is_impossible));
         }
         let values = self.wishes.derivation.values(&row, self.span_s);

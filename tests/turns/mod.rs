@@ -267,7 +267,7 @@ fn positions_that_the_range_has_no_room_for_are_told_and_not_calculated_with() {
     let small = ["--range", "0=10+16", "--derive", "t=0:unwrap"];
     let told = run(&[&log[..], &small].concat());
     assert_eq!(told.exit_code, 1, "{told:?}");
-    let is_it = |m: &String| m.contains("channel 0: 5 positions have bits above the angle");
+    let is_it = |m: &String| m.contains("channel 0: 5 positions have bits outside 1024 steps");
     assert!(told.messages.iter().any(is_it), "{told:?}");
     let rows = fs::read_to_string(&csv).unwrap();
     assert!(rows.lines().skip(1).all(|row| row.ends_with(',')), "{rows}");

@@ -5,8 +5,8 @@ use super::{scales, settled, told, RangedPort};
 use crate::error::GenError;
 use clap::Args;
 use endat_driver::Reading;
-use endat_host::causes;
 use endat_host::units::Scale;
+use endat_host::{causes, range};
 use endat_regs::{Part, Protocol};
 use serde_json::{json, Value};
 use std::fmt::Write;
@@ -64,14 +64,30 @@ pub fn json(channel: usize, reading: &Reading, scale: &Scale) -> Value {
         "value": reading.valid.then_some(units.value),
         "unit": units.unit,
         "turns": units.turns.filter(|_| reading.valid),
+        "in_range": is_in_range(reading, scale),
         "fresh": reading.fresh,
         "cause": reading.cause_name(),
         "age_us": reading.age_us,
     })
 }
 
-/// What kind of result it is.
-pub fn verdict(reading: &Reading) -> String {
+/// Whether a position has no bit outside the range of its channel.
+pub fn is_in_range(reading: &Reading, scale: &Scale) -> bool {
+    !reading.valid || scale.fits(reading.position)
+}
+
+/// What kind of result it is, and the special bits that came with it.
+pub fn verdict(reading: &Reading, scale: &Scale) -> String {
+    match reading.special_bits {
+        Some(bits @ 1..) => format!("{}, special bits 0x{bits:02X}", kind(reading, scale)),
+        _ => kind(reading, scale),
+    }
+}
+
+fn kind(reading: &Reading, scale: &Scale) -> String {
+    if !is_in_range(reading, scale) {
+        return "wrong: bits outside its range".into();
+    }
     if reading.fresh && is_old(reading) {
         return "old: no result for more than 65 ms".into();
     }
@@ -97,8 +113,11 @@ fn also(reading: &Reading, protocol: Protocol) -> String {
 }
 
 /// The same with its colour.
-fn painted_verdict(reading: &Reading) -> String {
-    let told = verdict(reading);
+fn painted_verdict(reading: &Reading, scale: &Scale) -> String {
+    let told = verdict(reading, scale);
+    if !is_in_range(reading, scale) {
+        return colour::bad(told);
+    }
     match (reading.fresh && !is_old(reading), reading.cause) {
         (true, 0) => colour::good(told),
         (true, _) => colour::doubtful(told),
@@ -124,8 +143,13 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     messages.extend(
         each.filter_map(|(channel, r)| Some(format!("channel {channel}: {}", why_old(r)?))),
     );
-    let is_good = results.channels.iter().all(|r| r.fresh && !is_old(r));
     let each = results.channels.iter().zip(&scales).enumerate();
+    let outside = each
+        .clone()
+        .filter(|(_, (r, scale))| !is_in_range(r, scale));
+    messages.extend(outside.map(|(n, (_, scale))| range::too_small(n, 1, scale)));
+    let mut pairs = each.clone().map(|(_, pair)| pair);
+    let is_good = pairs.all(|(r, scale)| r.fresh && !is_old(r) && is_in_range(r, scale));
     let has_infos = card.identity().has(Part::Requests);
     let stdout = if arguments.json {
         let objects = each.map(|(channel, (r, scale))| {
@@ -158,16 +182,12 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
             } else {
                 "-".into()
             };
-            let special = match r.special_bits {
-                Some(bits @ 1..) => format!(", special bits 0x{bits:02X}"),
-                _ => String::new(),
-            };
             let _ = writeln!(
                 text,
-                "{channel:>7}  {:<24} {raw:>16}  {:>9}  {}{}{special}",
+                "{channel:>7}  {:<24} {raw:>16}  {:>9}  {}{}",
                 shown(r, scale),
                 r.age_us,
-                painted_verdict(r),
+                painted_verdict(r, scale),
                 also(r, card.identity().protocol(channel)),
             );
         }
@@ -186,6 +206,27 @@ mod tests {
     use endat_regs::causes::endat;
     use endat_regs::RESULT;
 
+    const ANY: Scale = Scale::Counts { turns_at: None };
+
+    /// Catches an angle that has lost its upper bits and is called good.
+    #[test]
+    fn a_position_with_bits_outside_its_range_is_not_called_good() {
+        let reading = |position| Reading {
+            position,
+            valid: true,
+            fresh: true,
+            ..Reading::default()
+        };
+        let small = Scale::of_bits(17, 4, Some(24));
+        assert_eq!(verdict(&reading(0xF << 24 | 0x1_FFFF), &small), "good");
+        for outside in [1 << 17, 1 << 28] {
+            let (reading, wanted) = (reading(outside), "wrong: bits outside its range");
+            assert_eq!(verdict(&reading, &small), wanted);
+            assert!(painted_verdict(&reading, &small).contains(wanted));
+            assert_eq!(json(0, &reading, &small)["in_range"], false);
+        }
+    }
+
     #[test]
     fn a_result_of_long_ago_is_not_called_good() {
         let at = |age_us| Reading {
@@ -194,8 +235,9 @@ mod tests {
             age_us,
             ..Reading::default()
         };
-        assert_eq!(verdict(&at(65_534)), "good");
-        assert_eq!(verdict(&at(65_535)), "old: no result for more than 65 ms");
+        let told = |age_us| verdict(&at(age_us), &ANY);
+        assert_eq!(told(65_534), "good");
+        assert_eq!(told(65_535), "old: no result for more than 65 ms");
         assert_eq!(why_old(&at(65_534)), None);
         let old = why_old(&at(65_535)).unwrap();
         assert!(old.contains("is a trigger enabled"), "{old}");
@@ -216,7 +258,11 @@ mod tests {
             0,
         ];
         let reading = Reading::new(&words, Protocol::Endat);
-        let told = format!("{}{}", verdict(&reading), also(&reading, Protocol::Endat));
+        let told = format!(
+            "{}{}",
+            verdict(&reading, &ANY),
+            also(&reading, Protocol::Endat)
+        );
         assert_eq!(
             told,
             "none: data_not_falling, also crc, f1, tail_low, upset"
@@ -225,7 +271,7 @@ mod tests {
             &[1 | 2 << 16, 0, 0, 0, 0b1010 << field("flags"), 0],
             Protocol::Ssi,
         );
-        let told = format!("{}{}", verdict(&ssi), also(&ssi, Protocol::Ssi));
+        let told = format!("{}{}", verdict(&ssi, &ANY), also(&ssi, Protocol::Ssi));
         assert_eq!(told, "none: data_not_high, also position_parity");
     }
 

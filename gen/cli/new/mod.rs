@@ -8,7 +8,7 @@ use super::Outcome;
 use crate::config;
 use crate::error::{shown, GenError};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
-use questions::{buses_of_boards, Answers, Of, Question, NO_BOARD, QUESTIONS};
+use questions::{buses_of_boards, has_turns_apart, Answers, Of, Question, NO_BOARD, QUESTIONS};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -83,7 +83,7 @@ fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
         if given[question.name].is_empty() && question.may_be_empty() {
             continue;
         }
-        let literal = text::literal(question.of, &question.option(), &given[question.name]);
+        let literal = text::literal(question.of, &question.option(given), &given[question.name]);
         literal.map_err(|error| error.messages().to_vec())?;
     }
     loop {
@@ -109,11 +109,11 @@ fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
             Err(wrong) => wrong,
         };
         let is_about = |q: &&Question| {
-            let path = q.path();
+            let path = q.path(&all);
             wrong.iter().any(|one| one.text.starts_with(&path))
         };
         let is_named = |q: &&Question| {
-            let path = q.path();
+            let path = q.path(&all);
             let key = path.rsplit('.').next().unwrap_or_default();
             wrong.iter().any(|one| one.text.contains(key))
         };
@@ -203,6 +203,10 @@ fn check_asked(given: &Answers, all: &Answers) -> Result<(), GenError> {
             "board" => format!(
                 "--board = {told}: a card behind bus {bus} stays inside a chip, so it has no board top; use --board {NO_BOARD}, or --bus {}",
                 buses_of_boards().join(", ")
+            ),
+            // Asked where it follows from nothing.
+            "multi-turn-bits" if has_turns_apart(all) => format!(
+                "--multi-turn-bits = {told}: positions of protocol {protocol} have unused bits above the angle, so its bits do not follow; give --single-turn-bits, too"
             ),
             _ => format!(
                 "--{name_of} = {told}: a card with protocol {protocol} and bus {bus} has no such key; leave --{name_of} out"

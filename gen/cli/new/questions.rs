@@ -6,6 +6,7 @@ use crate::config::words::RECEIVER_BUS;
 use crate::form::key::Kind;
 use crate::json_schema::plain;
 use crate::number::number;
+use crate::protocols::ssi::keys as ssi;
 use crate::protocols::t_format::keys::BIT_RATE;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::timing::{cycles_to_ns, period_cycles};
@@ -78,6 +79,14 @@ pub fn form_of(answers: &Answers) -> u8 {
     }
 }
 
+/// Where a key of this table stands: other protocols have no table for all channels.
+pub fn place_of(table: &'static str, answers: &Answers) -> &'static str {
+    match table == keys::COMMON && form_of(answers) != keys::ENDAT_FORM {
+        true => keys::CHANNELS,
+        false => table,
+    }
+}
+
 /// A channel that speaks what was answered has this key.
 fn is_of_form(key: &Key, answers: &Answers) -> bool {
     key.forms & form_of(answers) != 0
@@ -89,7 +98,7 @@ fn is_endat(answers: &Answers) -> bool {
 }
 
 /// Unused bits may be between the angle and what counts turns, so that one does not follow from the other.
-fn has_turns_apart(answers: &Answers) -> bool {
+pub fn has_turns_apart(answers: &Answers) -> bool {
     let is_it = |p: &Protocol| p.row().turns_at.is_some() && form_of(answers) == keys::form(*p);
     Protocol::ALL.iter().any(is_it)
 }
@@ -273,6 +282,42 @@ pub static QUESTIONS: &[Question] = &[
         usual: |_| numbers(&[keys::BIT_DELAY.usual_number()]),
     },
     Question {
+        name: "code",
+        of: Of::Key(&ssi::CODE, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&ssi::CODE, answers),
+        usual: |_| ssi::CODE.words(),
+    },
+    Question {
+        name: "parity",
+        of: Of::Key(&ssi::PARITY, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&ssi::PARITY, answers),
+        usual: |_| ssi::PARITY.words(),
+    },
+    Question {
+        name: "bits-before",
+        of: Of::Key(&ssi::BITS_BEFORE, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&ssi::BITS_BEFORE, answers),
+        usual: |_| vec![NOTHING.into()],
+    },
+    Question {
+        name: "bits-after",
+        of: Of::Key(&ssi::BITS_AFTER, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&ssi::BITS_AFTER, answers),
+        usual: |_| vec![NOTHING.into()],
+    },
+    Question {
+        name: "twice",
+        of: Of::Key(&ssi::TWICE, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&ssi::TWICE, answers),
+        usual: |_| vec!["false".into()],
+    },
+    Question {
+        name: "end-low",
+        of: Of::Key(&ssi::END_LOW, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&ssi::END_LOW, answers),
+        usual: |_| vec!["true".into()],
+    },
+    Question {
         name: "bit-hz",
         of: Of::Key(&BIT_RATE, keys::CHANNELS),
         is_asked: |answers| is_of_form(&BIT_RATE, answers),
@@ -362,17 +407,17 @@ impl Question {
     }
 
     /// What a complaint about its answer alone begins with.
-    pub fn option(&self) -> String {
+    pub fn option(&self, answers: &Answers) -> String {
         match self.of {
-            Of::Key(..) => self.path(),
+            Of::Key(..) => self.path(answers),
             Of::Channels => self.name.to_owned(),
         }
     }
 
     /// What the reader's complaint about it begins with.
-    pub fn path(&self) -> String {
+    pub fn path(&self, answers: &Answers) -> String {
         match self.of {
-            Of::Key(key, table) => key.path_in(table),
+            Of::Key(key, table) => key.path_in(place_of(table, answers)),
             Of::Channels => keys::CHANNELS.to_owned(),
         }
     }

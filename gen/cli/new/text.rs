@@ -1,11 +1,11 @@
 //! The text of a configuration: what was answered, and beside it every key that was not asked for, with what counts without it.
 
-use super::questions::{form_of, has_board, has_uart, Answers, Of, NOTHING, QUESTIONS};
+use super::questions::{form_of, has_board, has_uart, place_of, Answers, Of, NOTHING, QUESTIONS};
 use crate::config::base::takes;
 use crate::config::keys::{
     self, Key, Kind, Usual, CARD_FORM, CHANNELS, COMMON, ENDAT_FORM, KEYS, TABLES,
 };
-use crate::error::GenError;
+use crate::error::{shown, GenError};
 use crate::form::key::head;
 use crate::json_schema::plain;
 use crate::number::{grouped, number};
@@ -29,6 +29,13 @@ pub fn literal(of: Of, option: &str, answer: &str) -> Result<String, GenError> {
             let low = if limits.or_zero() { 0 } else { low };
             number(option, answer, low..=high).map(grouped)
         }
+        Of::Key(key, _) if key.kind == Kind::Boolean => match answer {
+            "true" | "false" => Ok(answer.to_owned()),
+            other => Err(GenError::input(format!(
+                "{option} = {}: is neither true nor false; give one of the two",
+                shown(other)
+            ))),
+        },
         Of::Key(key, _) if key.kind == Kind::Texts => {
             let words = answer.split([',', ' ']).filter(|word| !word.is_empty());
             let words = words.filter(|_| answer != NOTHING).map(toml::Value::from);
@@ -86,11 +93,8 @@ fn about(key: &Key) -> String {
 
 /// What was answered for a key of a table.
 fn answer(answers: &Answers, key: &Key, table: &str) -> Option<String> {
-    // Other protocols have no table for all channels.
-    let is_for_each = table == CHANNELS && form_of(answers) != ENDAT_FORM;
-    let is_moved = |its: &str| is_for_each && its == COMMON;
     let found = QUESTIONS.iter().find(|question| match question.of {
-        Of::Key(other, its) => other.name == key.name && (its == table || is_moved(its)),
+        Of::Key(other, its) => other.name == key.name && place_of(its, answers) == table,
         Of::Channels => false,
     })?;
     let told = answers.get(found.name)?;

@@ -23,11 +23,10 @@ const TURN_BITS: u64 = 13;
 const STROKE: f64 = 0.1;
 
 /// What it and its line can do of the faults that there are.
-const FAULTS: [&str; 9] = [
+const FAULTS: [&str; 8] = [
     "unplug",
     "plug",
     "crc (a bit of the second copy, or of the only one, which without parity bit and CRC nobody sees)",
-    "alarm (1: alarm, 2: power fails, 4: position not valid, and their sums; as far as bits_before and bits_after have them)",
     "silent",
     "slow",
     "jitter",
@@ -35,8 +34,12 @@ const FAULTS: [&str; 9] = [
     "heal",
 ];
 
-/// The causes that special bits may be, in the order of the bits of an alarm.
-const ALARMS: [u64; 3] = [cause::ALARM, cause::POWER_FAIL, cause::NOT_VALID];
+/// The causes that special bits may be, in the order of the bits of an alarm, and what they are called.
+const ALARMS: [(u64, &str); 3] = [
+    (cause::ALARM, "alarm"),
+    (cause::POWER_FAIL, "power fails"),
+    (cause::NOT_VALID, "position not valid"),
+];
 
 /// The special bits that an encoder with these alarms sends.
 fn extras(specials: &Specials, alarms: u16) -> Vec<Extra> {
@@ -46,7 +49,7 @@ fn extras(specials: &Specials, alarms: u16) -> Vec<Extra> {
         Special::Crc6 => Extra::Crc6,
         Special::Ignored => Extra::Level(false),
         special => Extra::Level(special.cause().is_none_or(|(cause, level)| {
-            let raised = ALARMS.iter().position(|is| *is == cause);
+            let raised = ALARMS.iter().position(|is| is.0 == cause);
             level == raised.is_some_and(|bit| alarms >> bit & 1 == 1)
         })),
     };
@@ -55,12 +58,12 @@ fn extras(specials: &Specials, alarms: u16) -> Vec<Extra> {
 
 /// The alarms that a channel's special bits can say.
 fn known_alarms(asked: &SsiSpec) -> u16 {
-    let has = |is: &u64| {
+    let has = |is: u64| {
         asked
             .specials()
-            .any(|s| s.cause().is_some_and(|(c, _)| c == *is))
+            .any(|s| s.cause().is_some_and(|(c, _)| c == is))
     };
-    (ALARMS.iter().enumerate()).fold(0, |known, (bit, is)| known | u16::from(has(is)) << bit)
+    (ALARMS.iter().enumerate()).fold(0, |known, (bit, is)| known | u16::from(has(is.0)) << bit)
 }
 
 /// The encoder that a channel is configured for.
@@ -173,8 +176,19 @@ fn link(encoder: &mut dyn OtherEncoder) -> &mut SsiLink {
 }
 
 impl OtherFaults for Faults {
-    fn known(&self) -> &'static [&'static str] {
-        &FAULTS
+    fn known(&self) -> Vec<String> {
+        let known = known_alarms(&self.asked);
+        let bits = ALARMS.iter().enumerate();
+        let bits = bits.filter(|(bit, _)| known >> bit & 1 == 1);
+        let bits: Vec<String> = bits
+            .map(|(bit, (_, means))| format!("{} {means}", 1 << bit))
+            .collect();
+        let alarms = (!bits.is_empty()).then(|| format!("alarm ({}, or a sum)", bits.join(", ")));
+        FAULTS
+            .map(str::to_owned)
+            .into_iter()
+            .chain(alarms)
+            .collect()
     }
 
     fn make(&mut self, encoder: &mut dyn OtherEncoder, deed: Deed) -> Option<()> {

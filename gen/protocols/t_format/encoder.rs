@@ -107,8 +107,8 @@ fn link(encoder: &mut dyn OtherEncoder) -> &mut TFormatLink {
 }
 
 impl OtherFaults for Faults {
-    fn known(&self) -> &'static [&'static str] {
-        &FAULTS
+    fn known(&self) -> Vec<String> {
+        FAULTS.map(str::to_owned).into()
     }
 
     fn make(&mut self, encoder: &mut dyn OtherEncoder, deed: Deed) -> Option<()> {

@@ -9,7 +9,7 @@ pub use order::Misfits;
 
 use super::count::Judge;
 use super::files::is_next;
-use super::layout::{of_channel, DerivedColumn};
+use super::layout::DerivedColumn;
 use super::picture::{Measurement, Seen};
 use crate::error::GenError;
 use endat_host::range::{self, Ranges};
@@ -384,11 +384,10 @@ impl Reader {
         self.now.cells.clear();
         for (n, cell) in row.cells.drain(..).enumerate() {
             let position = match (self.channels.get_mut(n), self.units.get(n)) {
-                (Some(channel), Some(unit)) if cell.fresh => channel.position(&cell, unit),
+                (Some(channel), Some(unit)) if cell.fresh => channel.position(n, &cell, unit),
                 _ => Ok(None),
             };
-            let position = position
-                .map_err(|why| Wrong::at(row.line, format!("{} {why}", of_channel(n, "raw"))))?;
+            let position = position.map_err(|why| Wrong::at(row.line, why))?;
             self.now.cells.push(Seen {
                 raw: cell.raw,
                 position,

@@ -1,9 +1,10 @@
 //! Positions of a file counted on: as it says what they are, as its user says, or as far as its columns tell.
 
 use super::super::about::scale_of;
+use super::super::layout::of_channel;
 use super::{Cell, Head, Wrong};
 use endat_host::motion::Unwrap;
-use endat_host::range::Ranges;
+use endat_host::range::{self, Ranges};
 use endat_host::units::Scale;
 use endat_regs::Protocol;
 
@@ -16,18 +17,24 @@ struct TextTurns {
 }
 
 impl TextTurns {
-    fn step(&mut self, value: f64, told: u64, unit: &str) -> f64 {
+    /// A value counted on. Refuses turns that are not those of the short way from the row before: the encoder may have begun to count anew,
+    /// and nobody says after how many turns it does.
+    fn step(&mut self, n: usize, value: f64, told: u64, unit: &str) -> Result<f64, String> {
         if unit != "deg" {
-            return value;
+            return Ok(value);
         }
+        let (last, turns) = self.last.unwrap_or((value, told as f64));
+        let turns = turns - ((value - last) / 360.0).round();
         self.is_multiturn |= told > 0;
-        let (last, turns) = self.last.unwrap_or((value, 0.0));
-        let turns = match self.is_multiturn {
-            true => told as f64,
-            false => turns - ((value - last) / 360.0).round(),
-        };
+        if self.is_multiturn && turns != told as f64 {
+            return Err(format!(
+                "{} = {told}: by the short way from the row before it is turn {turns}; {}",
+                of_channel(n, "turns"),
+                range::refusal(n)
+            ));
+        }
         self.last = Some((value, turns));
-        value + turns * 360.0
+        Ok(value + turns * 360.0)
     }
 }
 
@@ -89,11 +96,17 @@ impl Channel {
         self.scale
     }
 
-    /// The position of a cell, counted on if its range is known.
-    pub(super) fn position(&mut self, cell: &Cell, unit: &str) -> Result<Option<f64>, String> {
+    /// The position of a cell of channel `n`, counted on if its range is known.
+    pub(super) fn position(
+        &mut self,
+        n: usize,
+        cell: &Cell,
+        unit: &str,
+    ) -> Result<Option<f64>, String> {
         let (Some(mut scale), Some(raw)) = (self.scale, cell.raw) else {
             let turns = cell.turns.unwrap_or(0);
-            return Ok(cell.value.map(|value| self.text.step(value, turns, unit)));
+            let counted = |value| self.text.step(n, value, turns, unit);
+            return cell.value.map(counted).transpose();
         };
         if let Some(apart) = self.apart {
             let is_in_turn =
@@ -103,8 +116,53 @@ impl Channel {
             }
         }
         if self.is_said && !scale.fits(raw) {
-            return Err(format!("= {raw}: has more bits than --range gives it, {scale}; give as many as the encoder has"));
+            return Err(format!(
+                "{} = {raw}: has more bits than --range gives it, {scale}; give as many as the encoder has",
+                of_channel(n, "raw")
+            ));
         }
         Ok(Some(scale.value(self.turns.step(scale.steps(raw)))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Positions of text in degrees that does not say what it is of: angle and turns of each row.
+    fn counted(rows: &[(f64, u64)]) -> Result<Vec<f64>, String> {
+        let mut channel = Channel::default();
+        let each = rows.iter().map(|&(value, turns)| {
+            let cell = Cell {
+                raw: Some(0),
+                value: Some(value),
+                turns: Some(turns),
+                ..Cell::default()
+            };
+            Ok(channel.position(1, &cell, "deg")?.unwrap_or_default())
+        });
+        each.collect()
+    }
+
+    /// Catches a drift of a thousand turns a second where the count of turns begins anew.
+    #[test]
+    fn turns_of_text_are_counted_on_as_long_as_nobody_needs_to_know_where_they_end() {
+        let multi_turn = counted(&[(350.0, 4), (10.0, 5), (350.0, 4)]).unwrap();
+        assert_eq!(multi_turn, [1790.0, 1810.0, 1790.0]);
+        let single_turn = counted(&[(350.0, 0), (10.0, 0), (170.0, 0)]).unwrap();
+        assert_eq!(single_turn, [350.0, 370.0, 530.0]);
+        for (rows, told, known) in [
+            ([(350.0, 4095), (10.0, 0)], 0, 4096),
+            ([(10.0, 0), (350.0, 4095)], 4095, -1),
+            ([(350.0, 1), (10.0, 0)], 0, 2),
+            ([(10.0, 3), (20.0, 7)], 7, 3),
+        ] {
+            let why = counted(&rows).unwrap_err();
+            let begin = format!("ch1_turns = {told}: by the short way from the row before it is turn {known}; nobody says");
+            assert!(
+                why.starts_with(&begin) && why.contains("--range 1=SINGLE+MULTI"),
+                "{why}"
+            );
+        }
     }
 }

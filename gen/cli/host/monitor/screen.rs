@@ -1,6 +1,6 @@
 //! What is on the screen, and what keys do to it.
 
-use super::super::read::{shown, verdict};
+use super::super::read::{is_in_range, shown, verdict};
 use super::look::{Look, Seen};
 use super::text::{names, rate};
 use endat_host::motion::nearest;
@@ -147,8 +147,9 @@ impl Screen {
     }
 
     /// How well a channel is.
-    fn health(&self, seen: &Seen) -> Style {
-        match (seen.reading.fresh, seen.reading.cause) {
+    fn health(&self, seen: &Seen, scale: &Scale) -> Style {
+        let is_good = seen.reading.fresh && is_in_range(&seen.reading, scale);
+        match (is_good, seen.reading.cause) {
             (true, 0) => self.style(Color::Green),
             (true, _) => self.style(Color::Yellow),
             _ => self.style(Color::Red).add_modifier(Modifier::BOLD),
@@ -172,12 +173,12 @@ impl Screen {
     fn table(&self, width: usize) -> Vec<Line<'_>> {
         const NUMBER: usize = 5;
         const GAP: usize = 2;
-        let channels = 0..self.facts.scales.len();
-        let known = channels.clone().filter_map(|n| Some((n, self.seen(n)?)));
+        let channels = || self.facts.scales.iter().enumerate();
+        let known = channels().filter_map(|(n, scale)| Some((n, scale, self.seen(n)?)));
         let (mut position, mut result) = ("position".len(), "result".len());
-        for (n, seen) in known {
+        for (n, scale, seen) in known {
             position = position.max(self.position(n, seen).chars().count());
-            result = result.max(verdict(&seen.reading).chars().count());
+            result = result.max(verdict(&seen.reading, scale).chars().count());
         }
         position += 1;
         let mut room = width.saturating_sub(NUMBER + position + GAP + result);
@@ -202,7 +203,7 @@ impl Screen {
         let head = row("  ch".into(), "position", &names) + "result";
         let bold = Style::new().add_modifier(Modifier::BOLD);
         let mut lines = vec![Line::styled(head, bold)];
-        for channel in channels {
+        for (channel, scale) in channels() {
             let mark = if channel == self.selected { '>' } else { ' ' };
             let Some(seen) = self.seen(channel) else {
                 lines.push(Line::raw(format!("{mark} {channel:<3}-")));
@@ -213,7 +214,7 @@ impl Screen {
             let begin = format!("{mark} {channel}");
             let row = vec![
                 Span::raw(row(begin, &self.position(channel, seen), &figures)),
-                Span::styled(verdict(r), self.health(seen)),
+                Span::styled(verdict(r, scale), self.health(seen, scale)),
             ];
             let chosen = match channel == self.selected {
                 true => bold,

@@ -34,7 +34,7 @@ pub fn lines(look: &Look, scales: &[Scale]) -> String {
             text,
             "channel {channel}  {:<28} {}",
             shown(r, scale),
-            verdict(r)
+            verdict(r, scale)
         );
         let _ = write!(
             text,

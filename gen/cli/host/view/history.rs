@@ -38,7 +38,7 @@ struct Motion {
 impl Motion {
     /// Takes a position; gives it counted on, and the velocity.
     fn step(&mut self, time_s: f64, position: u64) -> (f64, f64) {
-        if !self.scale.is_possible(position) {
+        if !self.scale.fits(position) {
             return (f64::NAN, f64::NAN);
         }
         let total = self.turns.step(self.scale.steps(position));
