@@ -1,10 +1,12 @@
 //! Properties of blocks: what is proved about them, in the file that `#[properties("x.sv")]` names.
 //!
 //! Such a file is SystemVerilog over the emitted names of the block's nets and goes to the end of its module, below `` `ifdef FORMAL ``.
-//! It begins with a line for each property, `// name: words`; assertions are labelled with the name of theirs, lemmas that it takes with
+//! It begins with a line for each property, `// name: words`, or `// name unless CONSTANT (what it is), ...: words` where it is not claimed
+//! of a block in which one of these constants is not 0; assertions are labelled with the name of theirs, lemmas that it takes with
 //! `name_lemma`. What follows `` `ifdef FORMAL_ANY_STATE `` holds whatever the registers begin with, and is proved apart. Registers
 //! that only a proof has begin with `f_`.
 
+use super::Module;
 use std::collections::BTreeSet;
 
 /// From which states a property holds.
@@ -27,6 +29,38 @@ pub struct Property {
     pub begins: Begins,
     /// Its assertions: itself, and its lemmas.
     pub assertions: usize,
+    /// It is not claimed of a block in which one of these is not 0.
+    pub unless: Vec<Exception>,
+}
+
+/// What a property is not claimed of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exception {
+    /// The constant of the block that says so.
+    pub constant: String,
+    /// What it is, in words.
+    pub words: String,
+}
+
+impl Property {
+    /// What it says, and what it is not claimed of.
+    pub fn whole_words(&self) -> String {
+        let parts: Vec<&str> = self.unless.iter().map(|e| e.words.as_str()).collect();
+        match parts[..] {
+            [] => self.words.clone(),
+            _ => format!("{} No claim with {}.", self.words, parts.join(", ")),
+        }
+    }
+
+    /// What keeps it from being claimed of this block, in words; none: nothing.
+    pub fn not_claimed(&self, block: &Module) -> Option<&str> {
+        let is_there = |one: &&Exception| {
+            let mut constants = block.parameters.iter();
+            constants.any(|c| c.name.eq_ignore_ascii_case(&one.constant) && c.value != 0)
+        };
+        let found = self.unless.iter().find(is_there);
+        found.map(|one| one.words.as_str())
+    }
 }
 
 /// The condition below which properties of any state stand.
@@ -47,6 +81,7 @@ pub fn properties(text: &str) -> Vec<Property> {
         let Some((name, words)) = line.strip_prefix("// ").and_then(|l| l.split_once(": ")) else {
             continue;
         };
+        let (name, unless) = name.split_once(" unless ").unwrap_or((name, ""));
         if !is_name(name) {
             continue;
         }
@@ -55,6 +90,7 @@ pub fn properties(text: &str) -> Vec<Property> {
             words: words.into(),
             begins,
             assertions: 0,
+            unless: unless.split(", ").filter_map(exception).collect(),
         });
     }
     for label in labels {
@@ -63,6 +99,15 @@ pub fn properties(text: &str) -> Vec<Property> {
         }
     }
     found
+}
+
+/// `CONSTANT (what it is)`.
+fn exception(text: &str) -> Option<Exception> {
+    let (constant, words) = text.strip_suffix(')')?.split_once(" (")?;
+    Some(Exception {
+        constant: constant.into(),
+        words: words.into(),
+    })
 }
 
 /// Everything that a text names.
@@ -100,7 +145,7 @@ mod tests {
     use super::*;
 
     const TEXT: &str = "// a: First.\n// a_b: Second.\nreg f_x;\nalways @* begin\n    a: assert (1);\n    a_b_lemma: assert (1);\nend\n\
-        `ifdef FORMAL_ANY_STATE\n// c: Third: any.\nalways @* if (x) c: assert (1);\n`endif\n// Note: none.\n";
+        `ifdef FORMAL_ANY_STATE\n// c unless HAS_X (an x), HAS_Y (a y): Third: any.\nalways @* if (x) c: assert (1);\n`endif\n// Note: none.\n";
 
     #[test]
     fn a_text_gives_its_properties() {
@@ -116,5 +161,8 @@ mod tests {
             ("c", "Third: any.", Begins::Anywhere, 1),
         ];
         assert_eq!(short, expected);
+        let unless = |n: usize| found[n].unless.iter().map(|e| (&*e.constant, &*e.words));
+        assert_eq!(unless(0).count(), 0);
+        assert!(unless(2).eq([("HAS_X", "an x"), ("HAS_Y", "a y")]));
     }
 }

@@ -354,10 +354,10 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, max_shrink_iters: 0, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, max_shrink_iters: 0, ..ProptestConfig::default() })]
 
     #[test]
-    #[ignore = "slow: 48 random designs, with products of up to 128 bits"]
+    #[ignore = "slow: 24 random designs, with products of up to 128 bits"]
     fn random_designs_with_wide_products_agree(seed: u64) {
         check_random(seed, true).map_err(TestCaseError::fail)?;
     }

@@ -6,7 +6,7 @@ use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
 use crate::config::{load_any_preset, Configuration, Project, PRESETS, RECEIVER_PRESETS};
 use crate::error::GenError;
-use crate::prove::frames::{prove_cases, Line, Undriven, PHASES_MAX};
+use crate::prove::frames::{prove_cases, Line, Undriven, PHASES};
 use crate::prove::{self, Report, Subject};
 use clap::Args;
 use std::path::PathBuf;
@@ -30,6 +30,9 @@ pub struct ProveArgs {
     /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
     #[arg(long, value_name = "DELAY_CYCLES", value_parser = crate::number::parser(0, 1023), allow_negative_numbers = true)]
     frames: Option<u32>,
+    /// Phases of the microsecond in which these frames begin, evenly spread [default: 16, or all where there are fewer]
+    #[arg(long, value_name = "N", value_parser = crate::number::parser(1, 1000), requires = "frames", allow_negative_numbers = true)]
+    phases: Option<u32>,
     /// DATA while nobody drives it, in these frames [default: low behind an input filter, otherwise anything]
     #[arg(long, value_enum, requires = "frames")]
     undriven: Option<Undriven>,
@@ -113,9 +116,10 @@ fn frames(
     let undriven = arguments.undriven;
     let undriven = undriven.unwrap_or_else(|| Undriven::usual(&project.card));
     let line = Line::usual(delay_cycles, undriven, project.card.system_hz);
+    let phases = arguments.phases.map_or(PHASES, u64::from);
     let steps = Steps::new(None);
     let begin = |step: &str| steps.begin(step);
-    let mut report = prove::frames::prove(subject, project, line, PHASES_MAX, &begin)?;
+    let mut report = prove::frames::prove(subject, project, line, phases, &begin)?;
     if let (Some(folder), Some(broken)) = (&arguments.out, &mut report.broken) {
         broken.keep(folder, &format!("{}_frames", subject.name))?;
     }

@@ -173,7 +173,10 @@ fn modules(subject: &Subject, reports: &[PartReport]) -> Vec<ModuleRow> {
     let design = &subject.design;
     let trees = subject.parts.iter().map(|part| below(design, *part));
     let trees: Vec<Vec<usize>> = trees.collect();
-    let rows = || reports.iter().flat_map(|part| &part.rows);
+    let rows = || {
+        let all = reports.iter().flat_map(|part| &part.rows);
+        all.filter(|row| row.verdict != Verdict::NotClaimed)
+    };
     let row = |(index, module): (usize, &Module)| ModuleRow {
         module: module.name.clone(),
         part: (trees.iter().find(|tree| tree.contains(&index)))

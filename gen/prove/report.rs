@@ -21,6 +21,8 @@ pub enum Verdict {
     NotProved,
     /// Another property does not hold, and this one may lean on it.
     Undecided,
+    /// It says nothing of this block: the words say why.
+    NotClaimed,
 }
 
 impl Verdict {
@@ -51,6 +53,7 @@ impl fmt::Display for Verdict {
             Self::Violated { after_cycles } => f.pad(&format!("VIOLATED in cycle {after_cycles}")),
             Self::NotProved => f.pad("NOT PROVED"),
             Self::Undecided => f.pad("undecided"),
+            Self::NotClaimed => f.pad("no claim"),
         }
     }
 }
@@ -133,7 +136,7 @@ impl Report {
     /// Whether every property holds.
     pub fn is_good(&self) -> bool {
         let mut rows = self.parts.iter().flat_map(|p| &p.rows);
-        rows.all(|row| row.verdict == Verdict::Proved)
+        rows.all(|row| matches!(row.verdict, Verdict::Proved | Verdict::NotClaimed))
     }
 }
 
@@ -149,13 +152,17 @@ pub(super) fn rows(blocks: &[Block], begins: Begins, answer: &Answer) -> Vec<Row
     let mut rows = vec![];
     for block in blocks {
         for property in block.properties.iter().filter(|p| p.begins == begins) {
+            let verdict = match property.not_claimed(block.module) {
+                None => verdict(&block.module.name, &property.name),
+                Some(_) => Verdict::NotClaimed,
+            };
             rows.push(Row {
                 module: block.module.name.clone(),
                 name: property.name.clone(),
-                words: property.words.clone(),
+                words: property.whole_words(),
                 from_any_state: begins == Begins::Anywhere,
                 assertions: property.assertions,
-                verdict: verdict(&block.module.name, &property.name),
+                verdict,
                 trace: None,
             });
         }

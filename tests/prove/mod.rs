@@ -72,6 +72,43 @@ fn every_property_has_a_name_of_its_own_words_and_assertions() {
     assert!(blocks.len() >= 45, "{}", blocks.len());
 }
 
+/// Catches a property that holds of a card because it says nothing of it, and is called proved.
+#[test]
+fn what_a_property_is_not_claimed_of_is_told_for_the_card_that_has_it() {
+    let not_claimed = |text: &str| -> BTreeMap<String, String> {
+        let subject = subject(text);
+        let modules = subject.design.modules.iter();
+        let found = modules.flat_map(|module| {
+            let own = properties(&module.properties).into_iter();
+            own.filter_map(|p| Some((p.name.clone(), p.not_claimed(module)?.to_owned())))
+        });
+        found.collect()
+    };
+    assert_eq!(not_claimed(BARE), BTreeMap::new());
+    let told = not_claimed(&format!("{BARE}{REQUESTS}"));
+    let with_requests = [
+        "forward_only",
+        "one_result_per_trigger",
+        "phases_are_timed",
+        "phases_end",
+    ];
+    let told: Vec<(&str, &str)> = told.iter().map(|(n, w)| (&**n, &**w)).collect();
+    assert_eq!(told, with_requests.map(|name| (name, "requests")));
+    let subject = subject(&format!("{BARE}{REQUESTS}"));
+    for module in &subject.design.modules {
+        let found = properties(&module.properties);
+        // A constant that leaves something out of an assertion is told by the property.
+        for constant in module.parameters.iter().map(|p| p.name.to_uppercase()) {
+            let told = found.iter().flat_map(|p| &p.unless);
+            let is_told = told.clone().any(|e| e.constant == constant);
+            let leaves_out =
+                ["if (!", "= !", "& !", "assert ("].map(|before| format!("{before}{constant}"));
+            let is_left_out = leaves_out.iter().any(|t| module.properties.contains(t));
+            assert_eq!(is_told, is_left_out, "{}: {constant}", module.name);
+        }
+    }
+}
+
 #[test]
 fn every_property_of_a_channel_holds() {
     if tools::require_all(&TOOLS, "proofs of a port") {
@@ -347,7 +384,7 @@ fn the_page_tells_every_property() {
     let names: BTreeSet<&str> = there.iter().map(|(_, p)| p.name.as_str()).collect();
     assert!(readme.contains(&format!("{} properties", names.len())));
     for (block, property) in there {
-        let (name, words) = (&property.name, &property.words);
+        let (name, words) = (&property.name, property.whole_words());
         let row = page
             .lines()
             .find(|l| l.starts_with(&format!("| `{name}` |")));

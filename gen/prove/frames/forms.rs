@@ -241,6 +241,10 @@ impl Forms {
 
     /// `b` while `select` is HIGH, `a` otherwise.
     pub fn mux(&mut self, a: Form, b: Form, select: Form) -> Form {
+        // Mostly it is known; the sum of both would be one more for nothing.
+        if let Some(level) = select.level() {
+            return if level { b } else { a };
+        }
         // Two ways to write it are one function.
         let (a, b, select) = match select.is_inverted() {
             true => (b, a, !select),

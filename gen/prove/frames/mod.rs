@@ -27,13 +27,17 @@ use endat_hdl::config::{CardConfig, ChannelConfig, PhaseSource};
 use endat_hdl::protocol::ModeCommand;
 use rtl_design::elaborate::Module;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt;
+use std::panic::resume_unwind;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 use std::time::Instant;
 use walk::{Break, End, Run, State};
 
-/// Most phases of the microsecond that frames are proved in.
-pub const PHASES_MAX: u64 = 16;
+/// Phases of the microsecond that frames are proved in, unless somebody asks for more.
+pub const PHASES: u64 = 16;
 
 /// Inputs of the channel with their levels.
 type Settings = Vec<(&'static str, u128)>;
@@ -299,11 +303,22 @@ pub fn prove(
     };
     let all = case.tick_cycles();
     let count = all.min(phases);
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let threads = threads.min(count as usize);
+    let scope = match count == all {
+        true => String::new(),
+        false => format!("; --phases {all} proves all of them"),
+    };
+    progress(&format!(
+        "{}: frames that begin in {count} of {all} phases of the microsecond, {threads} at a time{scope}",
+        subject.name
+    ));
     let netlist = gates(subject, &subject.design.modules[top], &case, &settings)?;
     let mut induction = Induction {
         netlist: &netlist,
         case: &case,
         phases: (0..count).map(|phase| phase * all / count).collect(),
+        threads,
         progress,
         frame_cycles: [0, 0],
         rest_bits: [0, 0],
@@ -389,6 +404,7 @@ struct Induction<'a> {
     netlist: &'a Netlist,
     case: &'a Case,
     phases: Vec<u64>,
+    threads: usize,
     progress: &'a dyn Fn(&str),
     frame_cycles: [u64; 2],
     rest_bits: [usize; 2],
@@ -453,11 +469,37 @@ impl Induction<'_> {
         }
     }
 
-    /// A run in every phase of the microsecond: where it leads to, and the cycles of the longest one.
+    /// A run in every phase of the microsecond: where it leads to, and the cycles of the longest one. Phases are run side by side; of those
+    /// that break the first one counts, so that the outcome is that of one thread.
     fn all(&self, run: Run, name: &'static str, begins: &State) -> Result<(State, u64), Stop> {
+        if run != Run::Wait {
+            (self.progress)(&format!("{}: {name}", self.case.name));
+        }
+        let (netlist, case, phases) = (self.netlist, self.case, &self.phases);
+        let next = AtomicUsize::new(0);
+        let work = || {
+            let mut ends = BTreeMap::new();
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(phase) = phases.get(index) else {
+                    return ends;
+                };
+                let end = walk::run(netlist, case, begins, run, *phase);
+                if !matches!(end, Ok(End::Waits { .. })) {
+                    next.store(phases.len(), Ordering::Relaxed);
+                }
+                ends.insert(index, end);
+            }
+        };
+        let mut ends = BTreeMap::new();
+        thread::scope(|scope| {
+            let threads: Vec<_> = (0..self.threads).map(|_| scope.spawn(work)).collect();
+            for thread in threads {
+                ends.extend(thread.join().unwrap_or_else(|panic| resume_unwind(panic)));
+            }
+        });
         let (mut to, mut longest): (Option<State>, u64) = (None, 0);
-        for (index, phase) in self.phases.iter().enumerate() {
-            let end = walk::run(self.netlist, self.case, begins, run, *phase);
+        for end in ends.into_values() {
             match end.map_err(|what| unreadable(self.case, &what))? {
                 End::Waits { state, cycles } => {
                     longest = longest.max(cycles);
@@ -467,10 +509,6 @@ impl Induction<'_> {
                     }
                 }
                 End::Breaks(broken) => return Err(Stop::Broken(Broken::new(broken, name))),
-            }
-            if longest > 1 {
-                let (card, count) = (&self.case.name, self.phases.len());
-                (self.progress)(&format!("{card}: {name}, {} of {count} phases", index + 1));
             }
         }
         Ok((to.unwrap_or_default(), longest))

@@ -104,6 +104,7 @@ impl Claim {
             words: INSIDE_WORDS.into(),
             begins: Begins::AtStart,
             assertions: all - promised,
+            unless: vec![],
         });
         found
     }
