@@ -35,6 +35,8 @@ pub fn design_of(mut card: impl Block, name: &str) -> Result<Design, GenError> {
 pub struct BenchHost {
     /// What it declares, and its tasks: `transfer` if it moves words, otherwise `bus_write` and `bus_read`.
     pub text: &'static str,
+    /// The same in VHDL, in parts: signals, processes, procedures, steps.
+    pub vhdl: &'static str,
     /// It moves one word at a time.
     pub moves_words: bool,
     /// Ports of the card, and what each is connected to.

@@ -178,7 +178,7 @@ pub struct Core<'a> {
     pub input_hz: u64,
     /// Its Verilog files, the top module's among them.
     pub sources: &'a [String],
-    /// There is a test bench.
+    /// There is a test bench with encoders.
     pub has_bench: bool,
     /// What stands between its registers and the host.
     bus: HostBus,
@@ -248,7 +248,7 @@ impl<'a> Core<'a> {
             system_hz: SYSTEM_HZ.to_vec(),
             input_hz: SYSTEM_HZ.into_iter().max().unwrap_or_default(),
             sources,
-            has_bench: true,
+            has_bench: language == Language::Verilog,
             // Its bus is an asynchronous one.
             bus: HostBus::Parallel,
             initial_values: receiver.initial_values,

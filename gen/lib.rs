@@ -74,7 +74,7 @@ pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, G
         Language::Verilog => testbench::artifact(project)?,
         Language::Vhdl => None,
     };
-    let has_bench = bench.is_some() || language == Language::Vhdl;
+    let has_bench = project.bus != HostBus::Bare;
     let core = integration::Core::card(project, &sources, has_bench, language)?;
     let named = sources::named(&design, language);
     artifacts.extend(integration::artifacts(&core, &named)?);
@@ -83,7 +83,9 @@ pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, G
     artifacts.extend(bench);
     if language == Language::Vhdl {
         let played = vhdl::card(project, &design)?;
-        artifacts.extend(vhdl::bench(&core, &design, &played)?);
+        let program = vhdl::other_program(&played);
+        artifacts.extend(vhdl::bench(project, &core, &program)?);
+        artifacts.extend(vhdl::replay(&core, &design, &played)?);
     }
     let mut names = BTreeSet::new();
     if let Some(twice) = artifacts.iter().find(|a| !names.insert(&a.path)) {

@@ -9,6 +9,7 @@ use endat_hdl::config::{CardConfig, ChannelConfig, ChannelSpec};
 use endat_regs::Protocol;
 use endat_sim::bench::OtherEncoder;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A protocol besides EnDat.
 pub trait Other: Sync {
@@ -26,6 +27,9 @@ pub trait Other: Sync {
 
     /// What the emitted bench has for its channels; `sleeps`: the card does something else first.
     fn bench(&self, name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError>;
+
+    /// What the bench in VHDL has for its channels.
+    fn vhdl_bench(&self, name: &str, card: &CardConfig) -> Result<VhdlParts, GenError>;
 
     /// After an exchange without a reply the line of the bench's encoder is idle at the latest after this, in ns.
     fn idle_ns(&self) -> u64;
@@ -72,6 +76,37 @@ pub struct BenchParts {
     /// The shortest exchange, in system clock cycles.
     pub shortest_cycles: u64,
 }
+
+/// What the bench in VHDL has for the channels of a protocol.
+#[derive(Serialize)]
+pub struct VhdlParts {
+    /// Name of the protocol as an identifier.
+    pub word: &'static str,
+    /// The longest exchange, in system clock cycles.
+    pub longest_cycles: u64,
+    /// The shortest exchange.
+    pub shortest_cycles: u64,
+    /// Text for each place of the bench that is in [`VHDL_PLACES`].
+    #[serde(flatten)]
+    pub texts: BTreeMap<&'static str, String>,
+}
+
+/// Places of the bench in VHDL at which a protocol has text: its encoder, signals, what the encoder sends next, what is checked.
+pub const VHDL_PLACES: [&str; 13] = [
+    "encoder",
+    "signals",
+    "cables",
+    "variables",
+    "procedures",
+    "new_positions",
+    "give",
+    "results",
+    "read",
+    "restart",
+    "overrun",
+    "cut",
+    "steps",
+];
 
 /// An encoder that is plugged in.
 pub struct Plugged {

@@ -2,8 +2,8 @@
 //! Every channel has an encoder of its protocol there: models of their own, which share no code with the core.
 //! Of an initialisation it looks at the beginning only: the whole of it is longer than anybody simulates in Verilog.
 
-mod host;
-mod purpose;
+pub(crate) mod host;
+pub(crate) mod purpose;
 pub(crate) mod text;
 
 use crate::artifact::Artifact;
@@ -32,16 +32,16 @@ use text::{clock_ns, fields, real, whole, word_address, words, MARGIN_NS};
 /// After a clock that stopped, the bench's encoder waits this long before it takes the frame for ended, in ns.
 const ENCODER_GIVES_UP_NS: u64 = 15_000;
 /// Delay that the bench's encoder adds between a clock edge and its data, in ns.
-const LAUNCH_NS: u64 = 12;
+pub(crate) const LAUNCH_NS: u64 = 12;
 /// The trigger pin's way through synchroniser, edge detection and transaction, and one cycle for its phase.
-const TRIGGER_CYCLES_MAX: u64 = 10;
+pub(crate) const TRIGGER_CYCLES_MAX: u64 = 10;
 /// Cycles that synchroniser and edge detection add to the measured line delay (the filter's come on top).
-const INPUT_CYCLES: u64 = 3;
+pub(crate) const INPUT_CYCLES: u64 = 3;
 
 /// A channel and the encoder on it.
 #[derive(Serialize)]
-struct Port {
-    index: usize,
+pub(crate) struct Port {
+    pub(crate) index: usize,
     command: String,
     has_f2: u8,
     position_bits: u32,
@@ -49,13 +49,15 @@ struct Port {
     tcal_ns: String,
     tm_ns: String,
     cable_ns: String,
+    filter_cycles: u64,
+    slow_period_cycles: u64,
     recovery_cycles: u64,
     delay_cycles: u64,
     run_late: u64,
 }
 
 impl Port {
-    fn new(card: &CardConfig, index: usize, channel: &ChannelConfig) -> Self {
+    pub(crate) fn new(card: &CardConfig, index: usize, channel: &ChannelConfig) -> Self {
         let request = &channel.spec;
         let (low, high) = (request.recovery_min_ns, request.recovery_max_ns);
         let tm_ns = low + (high - low) / 4;
@@ -74,6 +76,8 @@ impl Port {
             tcal_ns: whole(request.tcal_max_ns),
             tm_ns: whole(tm_ns),
             cable_ns: real(cable_ns),
+            filter_cycles: channel.filter_cycles,
+            slow_period_cycles: channel.calibration_period_cycles(card.system_hz),
             recovery_cycles: cycles_at_most(tm_ns, card.system_hz),
             delay_cycles,
             // And what the receiver needs itself.
@@ -293,7 +297,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         second => card.safety.second_interface,
         fields => Serde([CARD_CONFIG, RESULT, DIRECT].iter().flat_map(fields).filter(|f| has_infos || !f.name.starts_with("INFO_")).collect::<Vec<_>>()),
         block_stride => BLOCK_STRIDE,
-        causes => causes(),
+        causes => causes(&CAUSES),
         identification => identification(card),
         timer => card.sources.timer,
         requests => card.service.requests,
@@ -311,22 +315,24 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
 }
 
 /// The event of a new result of each channel, the first of its four.
-fn result_events(card: &CardConfig) -> String {
+pub(crate) fn result_events(card: &CardConfig) -> String {
     let events: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
     format!("{events:08X}")
 }
 
 /// Causes that the bench waits for.
-fn causes() -> Vec<Value> {
-    let names = [
-        "no_start_bit",
-        "crc",
-        "f1",
-        "f2",
-        "data_not_falling",
-        "trigger_overrun",
-        "watchdog",
-    ];
+const CAUSES: [&str; 7] = [
+    "no_start_bit",
+    "crc",
+    "f1",
+    "f2",
+    "data_not_falling",
+    "trigger_overrun",
+    "watchdog",
+];
+
+/// These causes with their codes.
+pub(crate) fn causes(names: &[&str]) -> Vec<Value> {
     let rows = names
         .iter()
         .flat_map(|name| cause::ALL.iter().find(|c| c.name == *name));
@@ -335,7 +341,7 @@ fn causes() -> Vec<Value> {
 }
 
 /// Constant words from the first one on: they say which card this is.
-fn identification(card: &CardConfig) -> Vec<String> {
+pub(crate) fn identification(card: &CardConfig) -> Vec<String> {
     let constant = CARD
         .registers
         .iter()
@@ -346,7 +352,7 @@ fn identification(card: &CardConfig) -> Vec<String> {
 }
 
 /// What a host writes so that channels take every trigger: the bench is about such.
-fn every_trigger(card: &CardConfig) -> Vec<Value> {
+pub(crate) fn every_trigger(card: &CardConfig) -> Vec<Value> {
     let Some(frame) = CHANNEL_CONFIG
         .register("frame")
         .filter(|_| card.own_triggers())
@@ -354,11 +360,8 @@ fn every_trigger(card: &CardConfig) -> Vec<Value> {
         return vec![];
     };
     let write = |channel| {
-        let own = frame.fields.iter().filter(|f| is_own_trigger(f.name));
-        let begins = start(&CHANNEL_CONFIG, frame, card, channel);
-        let value = own.fold(begins, |word, f| word & !f.mask());
         let address = CHANNEL_CONFIG.address(frame, channel);
-        context! { address, value => format!("{value:08X}") }
+        context! { address, value => format!("{:08X}", purpose::setting(card, frame, channel)) }
     };
     (0..card.channels.len()).map(write).collect()
 }

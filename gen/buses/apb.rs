@@ -22,6 +22,7 @@ pub(super) const FRONT: Front = Front {
     design: |card, name, times, _| design_of(ApbCard::with_times(card, times), name),
     bench_host: Some(BenchHost {
         text: include_str!("../templates/bench_host/apb.v"),
+        vhdl: include_str!("../templates/vhdl/bench/host/apb.vhd"),
         moves_words: true,
         connections: PORTS,
     }),

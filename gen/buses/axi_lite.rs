@@ -47,6 +47,7 @@ pub(super) const FRONT: Front = Front {
     design: |card, name, times, _| design_of(AxiLiteCard::with_times(card, times), name),
     bench_host: Some(BenchHost {
         text: include_str!("../templates/bench_host/axi_lite.v"),
+        vhdl: include_str!("../templates/vhdl/bench/host/axi_lite.vhd"),
         moves_words: true,
         connections: PORTS,
     }),

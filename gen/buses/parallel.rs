@@ -29,6 +29,7 @@ pub(super) const FRONT: Front = Front {
     design: |card, name, times, _| design_of(ParallelCard::with_times(card, times), name),
     bench_host: Some(BenchHost {
         text: include_str!("../templates/bench_host/parallel.v"),
+        vhdl: include_str!("../templates/vhdl/bench/host/parallel.vhd"),
         moves_words: true,
         connections: PORTS,
     }),

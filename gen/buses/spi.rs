@@ -30,6 +30,7 @@ pub(super) const FRONT: Front = Front {
     design: |card, name, times, _| design_of(SpiCard::with_times(card, times), name),
     bench_host: Some(BenchHost {
         text: include_str!("../templates/bench_host/spi.v"),
+        vhdl: include_str!("../templates/vhdl/bench/host/spi.vhd"),
         moves_words: false,
         connections: PORTS,
     }),

@@ -15,6 +15,7 @@ pub(super) const FRONT: Front = Front {
     },
     bench_host: Some(BenchHost {
         text: include_str!("../templates/bench_host/uart.v"),
+        vhdl: include_str!("../templates/vhdl/bench/host/uart.vhd"),
         moves_words: false,
         connections: PORTS,
     }),

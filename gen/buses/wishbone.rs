@@ -25,6 +25,7 @@ pub(super) const FRONT: Front = Front {
     design: |card, name, times, _| design_of(WishboneCard::with_times(card, times), name),
     bench_host: Some(BenchHost {
         text: include_str!("../templates/bench_host/wishbone.v"),
+        vhdl: include_str!("../templates/vhdl/bench/host/wishbone.vhd"),
         moves_words: true,
         connections: PORTS,
     }),

@@ -6,6 +6,7 @@ use crate::error::GenError;
 use crate::template;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::config_ring::RING_BYTES;
+use endat_hdl::card::stream::buffer::frame_bytes;
 use endat_hdl::config::CardConfig;
 use minijinja::context;
 use serde::Serialize;
@@ -28,15 +29,15 @@ pub struct Host {
 }
 
 /// Bit times of a UART that a written word is waited for.
-const UART_SETTLE_BITS: f64 = 20.0;
+pub(crate) const UART_SETTLE_BITS: f64 = 20.0;
 /// Half an SPI clock period, in system clock cycles: a quarter more than the shortest one, and no multiple of a cycle.
-pub(super) const SCK_HALF_CYCLES: f64 = 5.1;
+pub(crate) const SCK_HALF_CYCLES: f64 = 5.1;
 
 /// What an access takes at most besides a turn of the configuration ring, in system clock cycles.
 const ACCESS_CYCLES: usize = 100;
 
 /// Longest access of a bus, in system clock cycles.
-fn access_cycles_max(card: &CardConfig) -> usize {
+pub(crate) fn access_cycles_max(card: &CardConfig) -> usize {
     RING_BYTES * (card.channels.len() + 1) + ACCESS_CYCLES
 }
 
@@ -48,6 +49,11 @@ const WORDS: &str = include_str!("../templates/bench_host/words.v");
 /// Whether frames of the stream go out over the UART from the start.
 pub fn pushes(bus: HostBus, card: &CardConfig) -> bool {
     bus == HostBus::Uart && card.stream.start.pushes()
+}
+
+/// Twice the longest frame of a stream, in bits of the UART.
+pub(crate) fn stream_bits(card: &CardConfig) -> u64 {
+    2 * 10 * frame_bytes(card.channels.len(), card.stream.additional_data)
 }
 
 /// The host of a card with this bus; none for a port without a bus.
@@ -64,8 +70,7 @@ pub fn host(bus: HostBus, card: &CardConfig) -> Result<Option<Host>, GenError> {
     let context = context! {
         uart_bit_ns => real(1e9 / card.baud as f64),
         pushes => pushes(bus, card),
-        // Twice the longest frame of a stream.
-        frame_bits => real((2 * 10 * endat_hdl::card::stream::buffer::frame_bytes(card.channels.len(), card.stream.additional_data)) as f64),
+        frame_bits => real(stream_bits(card) as f64),
         sck_half_ns => real(SCK_HALF_CYCLES * clk_ns),
         access_cycles_max => access_cycles_max(card),
     };

@@ -17,7 +17,7 @@ use endat_hdl::endat::timing::{
     cycles_at_most, cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::regs::{start, CHANNEL_CONFIG, LINE, RECOVERY, RESULT, SERVICE};
+use endat_hdl::regs::{start, Register, CHANNEL_CONFIG, LINE, RECOVERY, RESULT, SERVICE};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 
@@ -26,7 +26,7 @@ const RATES_HZ: [u64; 7] = [
     16_000_000, 8_000_000, 4_000_000, 2_000_000, 1_000_000, 200_000, 100_000,
 ];
 /// Rates below this take a simulator long.
-const SLOW_HZ: u64 = 1_000_000;
+pub(crate) const SLOW_HZ: u64 = 1_000_000;
 /// Fields of a request that the bench uses.
 const REQUEST_FIELDS: [&str; 3] = [
     "REQUEST_COMMAND",
@@ -78,26 +78,31 @@ fn at_rate(card: &CardConfig, clock_hz: u64) -> Option<CardConfig> {
     })
 }
 
+/// A word of the settings of a channel that takes every trigger.
+pub(crate) fn setting(card: &CardConfig, register: &Register, channel: usize) -> u32 {
+    let own = (register.fields.iter()).filter(|f| is_own_trigger(f.name));
+    let begins = start(&CHANNEL_CONFIG, register, card, channel);
+    own.fold(begins, |word, f| word & !f.mask())
+}
+
 /// What a host writes to give the channels the settings of a card; they take every trigger.
 fn writes(card: &CardConfig) -> Vec<Value> {
     let channels = card.endat_channels().map(|(n, _)| n);
     let words = channels.flat_map(|n| CHANNEL_CONFIG.registers.iter().map(move |r| (r, n)));
     let words = words.map(|(r, n)| {
-        let own = r.fields.iter().filter(|f| is_own_trigger(f.name));
-        let value = own.fold(start(&CHANNEL_CONFIG, r, card, n), |word, f| {
-            word & !f.mask()
-        });
         let address = format!("{:03X}", CHANNEL_CONFIG.address(r, n));
-        context! { address, value => format!("{value:08X}") }
+        context! { address, value => format!("{:08X}", setting(card, r, n)) }
     });
     words.collect()
 }
 
+/// The card at every usual rate that its system clock makes, in hertz.
+pub(crate) fn at_rates(card: &CardConfig) -> impl Iterator<Item = (u64, CardConfig)> + '_ {
+    (RATES_HZ.into_iter()).filter_map(|hz| Some((hz, at_rate(card, hz)?)))
+}
+
 fn rates(card: &CardConfig) -> Vec<Value> {
-    let possible = RATES_HZ
-        .into_iter()
-        .filter_map(|hz| Some((hz, at_rate(card, hz)?)));
-    let rates = possible.map(|(hz, changed)| {
+    let rates = at_rates(card).map(|(hz, changed)| {
         let period_cycles = card.system_hz / hz;
         context! {
             is_slow => hz < SLOW_HZ,
@@ -207,7 +212,7 @@ fn counters(card: &CardConfig) -> Vec<Value> {
 }
 
 /// Channels with forced errors on a schedule: where the schedule is, and what became of it.
-pub(super) fn tests(card: &CardConfig) -> Vec<Value> {
+pub(crate) fn tests(card: &CardConfig) -> Vec<Value> {
     if card.safety.error_test_ms == 0 {
         return vec![];
     }
@@ -265,7 +270,7 @@ pub(super) fn phases(card: &CardConfig) -> Vec<Value> {
 }
 
 /// The same, where the configuration knows a delay that is not the bench's: there it is measured.
-pub(super) fn first_measured(card: &CardConfig) -> Vec<Value> {
+pub(crate) fn first_measured(card: &CardConfig) -> Vec<Value> {
     match card.line.phase {
         PhaseSource::Fixed => phases(card),
         PhaseSource::Tracked | PhaseSource::Frame => vec![],
@@ -273,7 +278,7 @@ pub(super) fn first_measured(card: &CardConfig) -> Vec<Value> {
 }
 
 /// MRS codes that the services of a card select in turn after reset.
-pub(super) fn configured_list(card: &CardConfig) -> &[u8] {
+pub(crate) fn configured_list(card: &CardConfig) -> &[u8] {
     let list = &card.service.infos;
     let length = list.iter().position(|code| *code == 0);
     &list[..length.unwrap_or(list.len())]

@@ -1,130 +1,275 @@
-//! The VHDL bench of a core, and the vectors that it plays.
+//! The test bench in VHDL, with encoders and a host of its own. Times, words, fields and causes come from where the Verilog bench has
+//! them.
 
-use super::play::{is_program, Played};
 use crate::artifact::Artifact;
+use crate::buses::front;
+use crate::config::Project;
 use crate::error::GenError;
+use crate::front::BenchHost;
 use crate::integration::Core;
+use crate::other_protocol::VhdlParts;
+use crate::protocols::others_on;
 use crate::template::render;
+use crate::testbench::host::{
+    access_cycles_max, pushes, stream_bits, SCK_HALF_CYCLES, UART_SETTLE_BITS,
+};
+use crate::testbench::purpose::{at_rates, configured_list, first_measured, setting, tests};
+use crate::testbench::text::{fields, real, word_address, words, MARGIN_NS};
+use crate::testbench::{
+    causes, every_trigger, identification, result_events, Port, INPUT_CYCLES, LAUNCH_NS,
+    RESET_CYCLES, TRIGGER_CYCLES_MAX,
+};
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::services;
+use endat_hdl::config::CardConfig;
+use endat_hdl::endat::channel::CALIBRATION_FRAMES;
+use endat_hdl::endat::service::program::CLEAR_CYCLES;
+use endat_hdl::endat::timing::ABORT_US;
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::regs::{
+    start, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, RESULT, SERVICE,
+};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
-use rtl_design::elaborate::Design;
-use rtl_design::engine::Port;
-use rtl_design::vhdl::{as_printed, emitted_name, print_architecture};
-use serde::Serialize;
-use std::fmt::Write;
 
-/// The architecture of a sequencer in the bench.
-const ARCHITECTURE: &str = "bench";
+/// Causes that the bench waits for.
+const CAUSES: [&str; 7] = [
+    "no_start_bit",
+    "start_window",
+    "crc",
+    "f1",
+    "f2",
+    "data_not_falling",
+    "trigger_overrun",
+];
 
-/// A port of the core, and the bits of the vectors that it is.
-#[derive(Serialize)]
-struct Connection {
-    name: String,
-    range: String,
-    is_output: bool,
+/// Types, and the encoder on EnDat channels.
+const HEAD: &str = include_str!("../templates/vhdl/bench/head.vhd.jinja");
+const ENCODER: &str = include_str!("../templates/vhdl/bench/encoder.vhd.jinja");
+/// What comes after the encoders.
+const PARTS: [&str; 3] = [
+    include_str!("../templates/vhdl/bench/bench.vhd.jinja"),
+    include_str!("../templates/vhdl/bench/main.vhd.jinja"),
+    include_str!("../templates/vhdl/bench/steps.vhd.jinja"),
+];
+/// An encoder of another protocol is at rest this long after the start at the latest, besides what its protocol says.
+const IDLE_NS: u64 = 100_000;
+/// Procedures of hosts that move one word at a time.
+const WORDS: &str = include_str!("../templates/vhdl/bench/host/words.vhd");
+
+/// The settings of a card: three words of each channel, 0 of those without an EnDat encoder.
+fn settings(card: &CardConfig, word: impl Fn(&CardConfig, usize, usize) -> u32) -> Vec<String> {
+    let words = (0..CHANNEL_CONFIG.registers.len()).map(|w| move |n| (n, w));
+    let words: Vec<_> = words.collect();
+    let channels = (0..card.channels.len()).flat_map(|n| words.iter().map(move |at| at(n)));
+    let value = |(n, w): (usize, usize)| match card.channels[n].is_endat() {
+        true => word(card, n, w),
+        false => 0,
+    };
+    channels.map(|at| format!("{:08X}", value(at))).collect()
 }
 
-/// The bench and its vectors.
-pub fn artifacts(
+/// The configured clock, and the usual rates that this system clock makes.
+fn rates(card: &CardConfig) -> Vec<Value> {
+    let row = |hz: u64, card: &CardConfig| {
+        let words = settings(card, |card, n, w| {
+            setting(card, &CHANNEL_CONFIG.registers[w], n)
+        });
+        context! { hz, words }
+    };
+    let own = card.endat_channels().map(|(_, c)| c.spec.clock_hz).next();
+    let own = row(own.unwrap_or(0), card);
+    let usual = at_rates(card).map(|(hz, card)| row(hz, &card));
+    std::iter::once(own).chain(usual).collect()
+}
+
+/// What the host writes before the first trigger, besides the settings.
+fn writes(card: &CardConfig) -> Vec<Value> {
+    let why = |value: Value, address: &str, word: &str, why: &str| {
+        let text = |name: &str| value.get_attr(name).ok().map(|v| v.to_string());
+        let word = text(word).unwrap_or_else(|| format!("{:08X}", 0));
+        context! { address => text(address), value => word, why }
+    };
+    let measured = first_measured(card);
+    let measured = measured.into_iter().map(|port| {
+        why(
+            port,
+            "alignment",
+            "measured",
+            "these cables are not the configured one",
+        )
+    });
+    let forced = tests(card).into_iter();
+    let forced = forced.map(|port| why(port, "period", "", "no forced errors"));
+    let listed = card
+        .endat_channels()
+        .filter(|_| !configured_list(card).is_empty());
+    let listed = listed.map(|(n, _)| {
+        let address = word_address(&SERVICE, "list_length", n);
+        let value = format!("{:08X}", 0);
+        context! { address, value, why => "no additional data" }
+    });
+    let all = every_trigger(card).into_iter().enumerate();
+    let all = all.filter(|(n, _)| !card.channels[*n].is_endat()).map(|(_, write)| {
+        let address = write.get_attr("address").ok().and_then(|a| a.as_usize());
+        let address = address.map(|a| format!("{a:03X}"));
+        context! { address, value => write.get_attr("value").ok(), why => "the channel takes every trigger" }
+    });
+    measured.chain(forced).chain(listed).chain(all).collect()
+}
+
+/// What a card has and the bench does not check.
+fn unchecked(card: &CardConfig) -> Vec<&'static str> {
+    let parts = [
+        (card.service.requests, "requests and additional data"),
+        (card.service.continuous, "continuous clock"),
+        (card.service.diagnosis, "causes of the diagnosis, watchdog"),
+        (card.safety.recovery_counter, "recovery counter"),
+        (card.safety.error_test_ms != 0, "forced errors"),
+        (card.safety.second_interface, "second interface"),
+        (card.line.margin, "histograms of the edges"),
+        (card.line.alignment, "fixed phase"),
+        (card.stream.fifo_bytes != 0, "stream"),
+        (card.sources.timer, "period of the timer"),
+    ];
+    let missing = parts.into_iter().filter(|(has_part, _)| *has_part);
+    missing.map(|(_, name)| name).collect()
+}
+
+/// The ports of the bus, and the signal at each: those that Verilog ties to a literal have a signal of their name.
+fn connections(host: &BenchHost) -> Vec<Value> {
+    let row = |(port, net): &(&'static str, &'static str)| {
+        let net = if net.contains('\'') { *port } else { *net };
+        context! { port => *port, net }
+    };
+    host.connections.iter().map(row).collect()
+}
+
+/// The bench of a card; none for a port without a bus. `program` is the second architecture of the services' sequencers, if they need one.
+pub fn artifact(
+    project: &Project,
     core: &Core<'_>,
-    own: &Design,
-    played: &Played,
-) -> Result<Vec<Artifact>, GenError> {
-    let top = own.top();
-    let clock = top.ports.iter().find(|p| p.is_clock);
-    let clock = clock.map_or_else(String::new, |p| emitted_name(&top.nets[p.net].name));
-    let (inputs, outputs) = (bits(played, true), bits(played, false));
-    let program = match played.has_program {
-        true => other_program(&played.design),
+    program: &str,
+) -> Result<Option<Artifact>, GenError> {
+    let Some(host) = &front(project.bus).bench_host else {
+        return Ok(None);
+    };
+    let card = &project.card;
+    let ports: Vec<Port> = card
+        .endat_channels()
+        .map(|(n, channel)| Port::new(card, n, channel))
+        .collect();
+    let count = card.channels.len();
+    let settle_cycles = match project.bus {
+        HostBus::Uart => UART_SETTLE_BITS as u64 * card.uart_bit_cycles,
+        _ => access_cycles_max(card) as u64,
+    };
+    let others = others_on(card).map(|other| other.vhdl_bench(core.name, card));
+    let others: Vec<VhdlParts> = others.collect::<Result<_, _>>()?;
+    let idle_ns = others_on(card).map(|other| other.idle_ns() + IDLE_NS);
+    let shortest = others.iter().map(|parts| parts.shortest_cycles).min();
+    let longest = others.iter().map(|parts| parts.longest_cycles).max();
+    let facts = context! {
+        others => Serde(&others),
+        others_longest_cycles => longest.unwrap_or(0),
+        others_within_cycles => shortest.unwrap_or(0) / 4,
+        name => core.name,
+        origin => core.origin(),
+        initial_values => card.initial_values,
+        reset_cycles => RESET_CYCLES,
+        clear_cycles => CLEAR_CYCLES,
+        services => services(card),
+        program,
+        unchecked => unchecked(card),
+        first => ports.first().map_or(0, |port| port.index),
+        last => ports.last().map_or(0, |port| port.index),
+        channels => Serde(&ports),
+        count,
+        system_hz => card.system_hz,
+        cycles_per_us => card.system_hz.div_ceil(1_000_000),
+        margin_ns => MARGIN_NS,
+        settle_cycles,
+        trigger_cycles_max => TRIGGER_CYCLES_MAX,
+        abort_us => ABORT_US,
+        measuring_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
+        launch_ns => LAUNCH_NS,
+        input_cycles => INPUT_CYCLES,
+        rates => rates(card),
+        start_words => settings(card, |card, n, w| start(&CHANNEL_CONFIG, &CHANNEL_CONFIG.registers[w], card, n)),
+        parallel_crc => cause::flag::PARALLEL_CRC.trailing_zeros(),
+        all_channels => format!("{:08X}", (1u32 << count) - 1),
+        writes => writes(card),
+        timer => card.sources.timer,
+        identification => identification(card),
+        has_irq => project.bus != HostBus::Uart,
+        interrupt => card.outputs.interrupt.then(|| result_events(card)),
+        direct => card.outputs.position,
+        second => card.safety.second_interface,
+        block_stride => BLOCK_STRIDE,
+        direct_stride => DIRECT.stride,
+        idle_ns => idle_ns.max().unwrap_or(0),
+        pushes => pushes(project.bus, card),
+        frame_bits => stream_bits(card),
+        baud => card.baud,
+        sck_half_cycles => real(SCK_HALF_CYCLES),
+        access_cycles_max => host.moves_words.then(|| access_cycles_max(card)),
+        connections => connections(host),
+        causes => causes(&CAUSES),
+    };
+    let of_host =
+        |part: &str, text: &str| render("vhdl_host", text, &context! { part, ..facts.clone() });
+    let words_of_host = match host.moves_words {
+        true => of_host("procedures", WORDS)?,
         false => String::new(),
     };
     let context = context! {
-        name => core.name,
-        origin => core.origin(),
-        clock,
-        connections => Value::from(Serde(connections(played))),
-        input_bits => inputs.max(1),
-        output_bits => outputs.max(1),
-        steps => played.steps.len(),
-        known_from => played.known_from,
-        is_double => played.is_double,
-        good => played.good,
-        half_ps => 500_000_000_000 / played.system_hz,
-        initial_values => core.has_initial_values(),
-        program,
+        host_signals => of_host("signals", host.vhdl)?,
+        host_processes => of_host("processes", host.vhdl)?,
+        host_procedures => of_host("procedures", host.vhdl)? + &words_of_host,
+        host_steps => of_host("steps", host.vhdl)?,
+        ..facts
     };
-    let text = render(
-        "bench.vhd",
-        include_str!("../templates/vhdl/bench.vhd.jinja"),
-        &context,
-    )?;
-    Ok(vec![
-        Artifact::new(format!("{}_tb.vhd", core.name), text),
-        Artifact::new(format!("{}_tb.txt", core.name), vectors(played)),
-    ])
-}
-
-/// A second architecture of the modules with the program, which is not the core's own.
-fn other_program(design: &Design) -> String {
-    let design = as_printed(design);
-    let has_program = |(_, module): &(usize, &rtl_design::elaborate::Module)| {
-        module.memories.iter().any(is_program)
+    let text = |map: &str| {
+        let context = context! { map, ..context.clone() };
+        let encoder = (!ports.is_empty()).then_some(ENCODER);
+        let part = |part: &str| render("bench.vhd", part, &context);
+        let head = std::iter::once(HEAD).chain(encoder).map(part);
+        let encoders = others.iter().filter_map(|parts| parts.texts.get("encoder"));
+        let all = head.chain(encoders.cloned().map(Ok));
+        all.chain(PARTS.into_iter().map(part))
+            .collect::<Result<String, _>>()
     };
-    let modules = design.modules.iter().enumerate().filter(has_program);
-    let texts = modules.map(|(index, _)| print_architecture(&design, index, ARCHITECTURE));
-    texts.collect::<Vec<_>>().join("\n")
+    let map = register_map(&text("")?);
+    Ok(Some(Artifact::new(
+        format!("{}_tb.vhd", core.name),
+        text(&map)?,
+    )))
 }
 
-fn of(played: &Played, is_input: bool) -> impl Iterator<Item = (usize, &Port)> {
-    let ports = played.ports.iter().enumerate();
-    ports.filter(move |(_, port)| port.is_input == is_input)
-}
-
-fn bits(played: &Played, is_input: bool) -> usize {
-    of(played, is_input).map(|(_, port)| port.width_bits).sum()
-}
-
-fn connections(played: &Played) -> Vec<Connection> {
-    let mut all = vec![];
-    for is_input in [true, false] {
-        let mut low = 0;
-        for (_, port) in of(played, is_input) {
-            let range = match port.width_bits {
-                1 => low.to_string(),
-                width => format!("{} downto {low}", low + width - 1),
-            };
-            low += port.width_bits;
-            all.push(Connection {
-                name: emitted_name(&port.name),
-                range,
-                is_output: !is_input,
-            });
-        }
-    }
-    all
-}
-
-/// A line for each change: how many steps it stays, all inputs, all outputs; the last port of the list stands first.
-fn vectors(played: &Played) -> String {
-    let row = |step: &Vec<u128>, is_input: bool| {
-        let mut text = String::new();
-        for (at, port) in of(played, is_input).collect::<Vec<_>>().into_iter().rev() {
-            let _ = write!(text, "{:0width$b}", step[at], width = port.width_bits);
-        }
-        if text.is_empty() {
-            text.push('0');
-        }
-        text
+/// Constants for the words and fields that a text uses.
+fn register_map(text: &str) -> String {
+    let blocks = [
+        &CARD,
+        &CARD_CONFIG,
+        &CHANNEL_CONFIG,
+        &RESULT,
+        &INTERRUPT,
+        &DIRECT,
+    ];
+    let is_used = |name: &str| {
+        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        words.any(|word| word == name)
     };
-    let mut out = String::new();
-    let mut steps = played.steps.iter().peekable();
-    let mut count = 0;
-    while let Some(step) = steps.next() {
-        count += 1;
-        if steps.peek() != Some(&step) {
-            let _ = writeln!(out, "{count} {} {}", row(step, true), row(step, false));
-            count = 0;
-        }
-    }
-    out
+    let words = blocks.into_iter().flat_map(words);
+    let words = words.filter(|word| is_used(&word.name));
+    let words = words.map(|w| format!("    constant {} : natural := 16#{}#;\n", w.name, w.address));
+    let fields = blocks.into_iter().flat_map(fields);
+    let fields = fields.filter(|field| is_used(&format!("{}_F", field.name)));
+    let fields = fields.map(|f| {
+        format!(
+            "    constant {}_F : field_t := ({}, {});\n",
+            f.name, f.lsb, f.width
+        )
+    });
+    words.chain(fields).collect()
 }

@@ -27,8 +27,14 @@ fn the_list_has_the_core_in_order() {
     let (name, sources) = listed(&files);
     assert_eq!(sources.first(), Some(&"s6_two_channel_logic.vhd"));
     assert_eq!(sources.last(), Some(&"s6_two_channel.vhd"));
-    let others = ["_tb.vhd", "_component.vhd", "_registers.vhd", "_top.vhd"]
-        .map(|end| format!("{name}{end}"));
+    let others = [
+        "_tb.vhd",
+        "_replay_tb.vhd",
+        "_component.vhd",
+        "_registers.vhd",
+        "_top.vhd",
+    ]
+    .map(|end| format!("{name}{end}"));
     let all = files
         .iter()
         .map(|f| f.path.as_str())
@@ -44,7 +50,11 @@ fn the_list_has_the_core_in_order() {
     assert!(text(&files, "s6_two_channel.core").contains("vhdlSource-2008"));
     assert!(text(&files, "s6_two_channel_ipxact.xml").contains("<ipxact:language>vhdl<"));
     let readme = text(&files, "README.md");
-    assert!(readme.contains("`s6_two_channel_tb.vhd`") && !readme.contains("`s6_two_channel.v`"));
+    assert!(
+        readme.contains("`s6_two_channel_tb.vhd`")
+            && readme.contains("`s6_two_channel_replay_tb.vhd`")
+            && !readme.contains("`s6_two_channel.v`")
+    );
 }
 
 /// One component for both languages; the template has its ports.
@@ -98,4 +108,35 @@ fn an_unknown_language_is_refused_with_those_there_are() {
         outcome.messages,
         ["--language = ada: is none that is emitted; give verilog or vhdl"]
     );
+}
+
+/// Only a card with registers has a bench with encoders; every emission has one that plays a recorded run.
+#[test]
+fn cards_with_a_bus_have_a_bench_with_encoders() {
+    let bare = format!("{}bus = \"none\"\n", super::QUICK_BEGINS);
+    let bare = endat_gen::config::parse_any_on("bare.toml", &bare, None).unwrap();
+    let cases = [
+        (preset("clb_2mhz"), true),
+        (preset("ssi_two_channel"), true),
+        (preset("async_dsp"), false),
+        (super::emission(&bare), false),
+    ];
+    for (files, has_bench) in cases {
+        let (name, _) = listed(&files);
+        let has = |end: &str| files.iter().any(|f| f.path == format!("{name}{end}"));
+        assert_eq!(has("_tb.vhd"), has_bench, "{name}");
+        assert!(has("_replay_tb.vhd") && has("_replay_tb.txt"), "{name}");
+        let readme = text(&files, "README.md");
+        assert_eq!(
+            readme.contains(&format!("`{name}_tb.vhd`")),
+            has_bench,
+            "{name}"
+        );
+        let core = text(&files, &format!("{name}.core"));
+        assert_eq!(
+            core.contains("  replay:\n    <<: *sim"),
+            has_bench,
+            "{name}"
+        );
+    }
 }

@@ -1,5 +1,6 @@
-//! The emitted VHDL under GHDL: every preset in both languages, and its bench, which has to see what is broken.
+//! The emitted VHDL under GHDL: every preset in both languages, and its benches, which have to see what is broken.
 
+mod bench;
 mod files;
 mod mutations;
 
@@ -72,17 +73,17 @@ fn ghdl(
     tools::run("ghdl", folder, &arguments)
 }
 
-/// What the bench of an emission says.
-fn bench(folder: &Path, files: &[Artifact], standard: &str) -> (bool, String) {
+/// Output of the bench that plays a recorded run.
+fn replay(folder: &Path, files: &[Artifact], standard: &str) -> (bool, String) {
     let (name, _) = listed(files);
-    let (bench, file) = (format!("{name}_tb"), format!("{name}_tb.vhd"));
+    let (bench, file) = (format!("{name}_replay_tb"), format!("{name}_replay_tb.vhd"));
     let run = [&bench[..], "--ieee-asserts=disable-at-0"];
     ghdl(folder, files, standard, &[&file], &run)
 }
 
 fn assert_passes(test: &str, files: &[Artifact], standard: &str) {
     let folder = write(test, files);
-    let (is_good, text) = bench(&folder, files, standard);
+    let (is_good, text) = replay(&folder, files, standard);
     // Without one warning of numeric_std.
     assert!(
         is_good && text.trim() == "PASS",
@@ -97,8 +98,8 @@ fn is_elaborated(test: &str, name: &str, standards: &[&str]) {
     }
     let files = preset(name);
     let folder = write(&format!("{test}-{name}"), &files);
-    let (bench, component) = (format!("{name}_tb"), format!("{name}_component.vhd"));
-    let more = [&component[..], &format!("{name}_tb.vhd")];
+    let (bench, component) = (format!("{name}_replay_tb"), format!("{name}_component.vhd"));
+    let more = [&component[..], &format!("{bench}.vhd")];
     for standard in standards {
         let (is_good, text) = ghdl(&folder, &files, standard, &more, &[&bench, "--no-run"]);
         assert!(is_good && text.is_empty(), "{name} {standard}: {text}");
@@ -120,7 +121,7 @@ fn every_preset_is_analysed_and_elaborated_in_both_languages() {
 }
 
 #[test]
-fn benches_of_quick_presets_pass() {
+fn replay_benches_of_quick_presets_pass() {
     if tools::require("ghdl", "VHDL benches") {
         assert_passes("async_dsp-93", &preset("async_dsp"), STANDARDS[0]);
     }
@@ -128,7 +129,7 @@ fn benches_of_quick_presets_pass() {
 
 #[test]
 #[ignore = "slow: every preset's bench"]
-fn every_bench_passes_in_both_languages() {
+fn every_replay_bench_passes_in_both_languages() {
     if !tools::require("ghdl", "VHDL benches") {
         return;
     }
@@ -145,7 +146,7 @@ fn every_bench_passes_in_both_languages() {
 /// Presets have a UART, APB and AXI4-Lite. These cards have the other buses, and registers without start values.
 #[test]
 #[ignore = "slow: benches of cards on other buses and without start values"]
-fn benches_of_other_cards_pass() {
+fn replay_benches_of_other_cards_pass() {
     if !tools::require("ghdl", "VHDL benches") {
         return;
     }
@@ -163,7 +164,7 @@ fn benches_of_other_cards_pass() {
         let card = config::parse_any_on("other.toml", &text, None).unwrap();
         let files = emission(&card);
         let folder = write(&format!("other-{index}"), &files);
-        let (is_good, said) = bench(&folder, &files, STANDARDS[index % 2]);
+        let (is_good, said) = replay(&folder, &files, STANDARDS[index % 2]);
         let passes = said.lines().any(|line| line == "PASS");
         assert!(is_good && passes, "{bus} {more}: {said}");
         // Before the reset numeric_std may say that values are none.
@@ -317,7 +318,7 @@ fn quick() -> Vec<Artifact> {
 }
 
 #[test]
-fn the_bench_passes_on_a_quick_card_and_fails_on_broken_ones() {
+fn the_replay_bench_passes_on_a_quick_card_and_fails_on_broken_ones() {
     assert!(MUTATIONS.len() >= 20);
     let files = quick();
     for mutation in MUTATIONS {
@@ -331,7 +332,7 @@ fn the_bench_passes_on_a_quick_card_and_fails_on_broken_ones() {
 
 #[test]
 #[ignore = "slow: every mutation"]
-fn the_bench_fails_on_twenty_broken_cards() {
+fn the_replay_bench_fails_on_twenty_broken_cards() {
     if tools::require("ghdl", "mutations of the emitted VHDL") {
         fails_on_broken("all-mutant", &quick(), MUTATIONS);
     }
@@ -341,7 +342,7 @@ fn fails_on_broken(test: &str, files: &[Artifact], mutations: &[Mutation]) {
     let survivors = on_both_cores(mutations, |index, mutation| {
         let broken = mutant(files, mutation).unwrap();
         let folder = write(&format!("{test}{index}"), &broken);
-        let (is_good, text) = bench(&folder, &broken, STANDARDS[index % 2]);
+        let (is_good, text) = replay(&folder, &broken, STANDARDS[index % 2]);
         // The bench has to see it, not a compiler.
         (is_good || !text.contains("FAIL: cycle")).then(|| format!("{}: {text}", mutation.name))
     });

@@ -1,7 +1,7 @@
 //! The SSI encoders of a test bench: who is on which line, and what the bench does with them.
 
 use crate::error::GenError;
-use crate::other_protocol::BenchParts;
+use crate::other_protocol::{BenchParts, VhdlParts, VHDL_PLACES};
 use crate::template;
 use crate::testbench::text::{real, whole};
 use endat_hdl::config::{CardConfig, ChannelConfig};
@@ -45,6 +45,9 @@ struct Port {
     cable_ns: String,
     half_ns: String,
     first_low_ns: String,
+    /// Special bits that may be anything, and those that are 1 if all is well, as the bits of a literal.
+    any: String,
+    well: String,
     #[serde(skip)]
     mask: String,
 }
@@ -59,6 +62,8 @@ impl Port {
         let left_ns = most_ns as f64 - asked.bit_delay_ns as f64 - 1.4;
         let cable_ns = (left_ns / 2.0).max(0.0);
         let bit_delay_ns = asked.bit_delay_ns as f64 + left_ns.min(0.0);
+        let special = Bits::new(asked);
+        let literal = |bits: u64| format!("{bits:0width$b}", width = SPECIALS_MAX);
         Self {
             index,
             position_bits: channel.position_bits,
@@ -81,6 +86,8 @@ impl Port {
             first_low_ns: whole(ns(
                 channel.period_cycles / 2 + channel.first_low_extra_cycles
             )),
+            any: literal(special.any),
+            well: literal(special.well),
             mask: format!("{:012X}", (1u64 << channel.position_bits) - 1),
         }
     }
@@ -207,14 +214,61 @@ fn late_ns(card: &CardConfig, channel: &ChannelConfig) -> u64 {
     cycles_to_ns(cycles, card.system_hz) - channel.spec.recovery_max_ns
 }
 
+/// The SSI channels of a card.
+fn speakers(card: &CardConfig) -> impl Iterator<Item = (usize, &ChannelConfig, &SsiSpec)> + Clone {
+    let channels = card.channels.iter().enumerate();
+    channels.filter_map(|(n, c)| Some((n, c, c.spoken.ssi()?)))
+}
+
+/// The shortest frame of a card's SSI channels, in system clock cycles.
+fn shortest_cycles(card: &CardConfig) -> u64 {
+    let frames =
+        speakers(card).map(|(_, c, asked)| c.period_cycles * asked.clocks(c.position_bits));
+    frames.min().unwrap_or(0)
+}
+
+/// What the bench in VHDL of a card with SSI channels has besides.
+pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, GenError> {
+    let ports = speakers(card).map(|(n, c, asked)| Port::new(card, n, c, asked));
+    let ports: Vec<Port> = ports.collect();
+    let channels: Vec<usize> = ports.iter().map(|p| p.index).collect();
+    let facts = context! {
+        name,
+        channels => Serde(ports),
+        numbers => channels,
+        count => card.channels.len(),
+        direct => card.outputs.position,
+        data_not_high => cause::DATA_NOT_HIGH,
+        data_not_low_after => cause::DATA_NOT_LOW_AFTER,
+        position_parity => cause::PARITY,
+        position_crc => cause::CRC,
+        copies_differ => cause::COPIES_DIFFER,
+        trigger_overrun => cause::TRIGGER_OVERRUN,
+        recovery_too_long => cause::RECOVERY_TOO_LONG,
+        late_ns => whole(speakers(card).map(|(_, c, _)| late_ns(card, c)).max().unwrap_or(0)),
+    };
+    let template = include_str!("../../templates/vhdl/bench/ssi.vhd.jinja");
+    let text = |place: &'static str| {
+        let context = context! { part => place, ..facts.clone() };
+        Ok((place, template::render("ssi.vhd", template, &context)?))
+    };
+    let longest = speakers(card).map(|(_, c, _)| c.cycle_max_cycles(card.system_hz));
+    Ok(VhdlParts {
+        word: Protocol::Ssi.row().word,
+        longest_cycles: longest.max().unwrap_or(0),
+        shortest_cycles: shortest_cycles(card),
+        texts: VHDL_PLACES
+            .into_iter()
+            .map(text)
+            .collect::<Result<_, GenError>>()?,
+    })
+}
+
 /// What the bench of a card with SSI channels has besides.
 pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError> {
-    let channels = card.channels.iter().enumerate();
-    let speakers = channels.filter_map(|(n, c)| Some((n, c, c.spoken.ssi()?)));
+    let speakers = speakers(card);
     let latest_ns = speakers.clone().map(|(_, c, _)| late_ns(card, c)).max();
-    let frames = speakers.clone();
-    let frames = frames.map(|(_, c, asked)| c.period_cycles * asked.clocks(c.position_bits));
-    let shortest_cycles = frames.min().unwrap_or(0);
+    let shortest_cycles = shortest_cycles(card);
     let ports: Vec<Port> = speakers
         .map(|(n, c, asked)| Port::new(card, n, c, asked))
         .collect();

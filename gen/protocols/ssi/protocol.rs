@@ -4,7 +4,7 @@ use super::channel_report::SsiReport;
 use super::{bench_parts, encoder, reading};
 use crate::config::reader::Table;
 use crate::error::GenError;
-use crate::other_protocol::{BenchParts, Other, OtherReport, Plugged, Wanted};
+use crate::other_protocol::{BenchParts, Other, OtherReport, Plugged, VhdlParts, Wanted};
 use crate::virtual_card::settings::VirtualConfig;
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::protocols::SsiSpec;
@@ -40,6 +40,10 @@ impl Other for Ssi {
 
     fn bench(&self, name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError> {
         bench_parts::parts(name, card, sleeps)
+    }
+
+    fn vhdl_bench(&self, name: &str, card: &CardConfig) -> Result<VhdlParts, GenError> {
+        bench_parts::vhdl_parts(name, card)
     }
 
     fn idle_ns(&self) -> u64 {

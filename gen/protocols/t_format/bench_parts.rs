@@ -1,12 +1,12 @@
 //! The T-format encoders of a test bench: who is on which line, and what the bench does with them.
 
 use crate::error::GenError;
-use crate::other_protocol::BenchParts;
+use crate::other_protocol::{BenchParts, VhdlParts, VHDL_PLACES};
 use crate::template;
 use crate::testbench::text::{fields, real, whole, words, Bits, MARGIN_NS};
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::endat::channel::TIMESTAMP_TO_FIRST_FALL_CYCLES;
-use endat_hdl::endat::timing::cycles_to_ns;
+use endat_hdl::endat::timing::{cycles_at_least, cycles_to_ns};
 use endat_hdl::protocols::t_format::cause;
 use endat_hdl::protocols::t_format::protocol::{
     control, Content, Request, BIT_HZ, FAST_BIT_HZ, FIELD_BITS, RATE_TOLERANCE_PPM, REST_US,
@@ -17,6 +17,7 @@ use endat_hdl::regs::{Block, Protocol, T_FORMAT};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// What an edge may be off beside the rate, in bits: clock cycles of the receiver.
 const EDGE_BITS: f64 = 0.025;
@@ -51,6 +52,9 @@ struct Port {
     has_multi: u8,
     has_identity: u8,
     has_alarm: u8,
+    /// Of the bench in VHDL: nominal length of a bit, and a letter for each field of the reply.
+    bit_ns: String,
+    reply: String,
 }
 
 impl Port {
@@ -81,8 +85,80 @@ impl Port {
             has_multi: has_multi.into(),
             has_identity: has(Content::EncoderId).into(),
             has_alarm: has(Content::Alarm).into(),
+            bit_ns: real(1e9 / wanted.bit_hz as f64),
+            reply: letters(&wanted.request),
         }
     }
+}
+
+/// A letter for each field of a reply, spaces after the last one.
+fn letters(request: &Request) -> String {
+    let letter = |content: &Content| match content {
+        Content::Control => 'C',
+        Content::Status => 'S',
+        Content::SingleTurn => 'A',
+        Content::MultiTurn => 'M',
+        Content::EncoderId => 'I',
+        Content::Alarm => 'L',
+        Content::Address | Content::Data => ' ',
+        Content::Crc => 'X',
+    };
+    let letters: String = request.reply().iter().map(letter).collect();
+    format!("{letters:width$}", width = fields_max())
+}
+
+/// Fields of the longest reply.
+fn fields_max() -> usize {
+    let fields = Request::ALL.iter().map(|request| request.reply().len());
+    fields.max().unwrap_or(0)
+}
+
+/// What an edge of a request may be off, in bits.
+fn tolerance() -> f64 {
+    FIELD_BITS as f64 * RATE_TOLERANCE_PPM as f64 / 1e6 + EDGE_BITS
+}
+
+/// From a reply to the next request, in ns: the receiver's rest begins within the last delimiter.
+const REST_NS: u64 = 500 * (REST_US - 1);
+
+/// What the bench in VHDL of a card with T-format channels has besides.
+pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, GenError> {
+    let channels = card.channels.iter().enumerate();
+    let speakers = channels.filter_map(|(n, c)| Some((n, c, c.spoken.t_format()?)));
+    let (longest, exchanges) = (speakers.clone(), speakers.clone());
+    let longest = longest.map(|(_, c, _)| c.cycle_max_cycles(card.system_hz));
+    let exchanges = exchanges.map(|(_, c, wanted)| c.period_cycles * wanted.request.wire_bits());
+    let ports: Vec<Port> = speakers
+        .map(|(n, c, wanted)| Port::new(card, n, c, wanted))
+        .collect();
+    let channels: Vec<usize> = ports.iter().map(|p| p.index).collect();
+    let causes = CAUSES.into_iter().collect::<BTreeMap<_, _>>();
+    let facts = context! {
+        name,
+        channels => Serde(ports),
+        numbers => channels,
+        count => card.channels.len(),
+        direct => card.outputs.position,
+        fields_max => fields_max(),
+        tolerance => real(tolerance()),
+        rest_ns => REST_NS,
+        sync => format!("{:03b}", control(0) & 7),
+        causes => Serde(causes),
+        trigger_overrun => cause::TRIGGER_OVERRUN,
+    };
+    let template = include_str!("../../templates/vhdl/bench/t_format.vhd.jinja");
+    let text = |place: &'static str| {
+        let context = context! { part => place, ..facts.clone() };
+        Ok((place, template::render("t_format.vhd", template, &context)?))
+    };
+    Ok(VhdlParts {
+        word: Protocol::TFormat.row().word,
+        longest_cycles: longest.max().unwrap_or(0) + cycles_at_least(IDLE_NS, card.system_hz),
+        shortest_cycles: exchanges.min().unwrap_or(0),
+        texts: (VHDL_PLACES.into_iter())
+            .map(text)
+            .collect::<Result<_, GenError>>()?,
+    })
 }
 
 /// A request as the encoder knows it: fields that it hears, and what it puts into the reply.
@@ -146,7 +222,6 @@ pub(crate) fn causes() -> Vec<Value> {
 /// The module of the encoder, for the bench of `name`.
 pub(crate) fn encoder(name: &str) -> Result<String, GenError> {
     let bit_ns = |hz: u64| 1e9 / hz as f64;
-    let rate = FIELD_BITS as f64 * RATE_TOLERANCE_PPM as f64 / 1e6;
     template::render(
         "t_format_encoder",
         include_str!("../../templates/t_format_encoder.v.jinja"),
@@ -154,9 +229,8 @@ pub(crate) fn encoder(name: &str) -> Result<String, GenError> {
             name,
             bit_ns => real(bit_ns(BIT_HZ)),
             fast_bit_ns => real(bit_ns(FAST_BIT_HZ)),
-            tolerance => real(rate + EDGE_BITS),
-            // The receiver's rest begins within the last delimiter.
-            rest_ns => whole(500 * (REST_US - 1)),
+            tolerance => real(tolerance()),
+            rest_ns => whole(REST_NS),
             // By the clock of the receiver, which may be slower.
             late_ns => real(1_000.0 * WAIT_GRACE_US as f64 + bit_ns(BIT_HZ) / 4.0),
             sync => control(0) & 7,

@@ -73,7 +73,7 @@ pub fn emit_in(receiver: &Receiver, language: Language) -> Result<Vec<Artifact>,
         Language::Verilog => artifacts.push(bench::artifact(receiver)?),
         Language::Vhdl => {
             let played = vhdl::receiver(receiver, &design)?;
-            artifacts.extend(vhdl::bench(&core, &design, &played)?);
+            artifacts.extend(vhdl::replay(&core, &design, &played)?);
         }
     }
     let context = context! {
