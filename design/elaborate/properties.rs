@@ -110,9 +110,10 @@ fn exception(text: &str) -> Option<Exception> {
     })
 }
 
-/// Everything that a text names.
+/// Everything that a text names; comments name nothing.
 pub(crate) fn words(text: &str) -> BTreeSet<&str> {
-    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+    let code = text.lines().filter_map(|line| line.split("//").next());
+    code.flat_map(|code| code.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'))
         .collect()
 }
 
@@ -163,6 +164,7 @@ mod tests {
         assert_eq!(short, expected);
         let unless = |n: usize| found[n].unless.iter().map(|e| (&*e.constant, &*e.words));
         assert_eq!(unless(0).count(), 0);
+        assert!(!words(TEXT).contains("First") && words(TEXT).contains("f_x"));
         assert!(unless(2).eq([("HAS_X", "an x"), ("HAS_Y", "a y")]));
     }
 }

@@ -437,7 +437,6 @@ module s6_two_channel_channel (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    wire [47:0] answer = 48'd0;
     wire [0:0] transaction_probe = 1'd0;
     wire [0:0] frame_own = 1'd0;
     // safe_after_reset: In the cycle after a reset CLOCK is HIGH and DATA is not driven.

@@ -518,9 +518,9 @@ module s6_two_channel_receiver (
     wire [1:0] infos = 2'd0;
     wire [0:0] waiting = 1'd0;
     wire [0:0] in_info = 1'd0;
-    // crc_as_received: The CRC is found right exactly if it equals one that is computed apart from it over the bits as sampled.
-    // error_bits_as_received: F1, and F2 of EnDat 2.2, are the first samples after the start bit of this frame.
-    // bits_counted: An answer is whole after F1, F2, as many position bits as were set and five CRC bits: no sample more or less.
+    // crc_as_received: The CRC of a frame that is all position is found right exactly if it equals one that is computed apart from it over the bits as sampled.
+    // error_bits_as_received: F1, and F2 of EnDat 2.2, are the first samples after the start bit of a frame that is all position.
+    // bits_counted: A frame that is all position is whole after F1, F2, as many position bits as were set and five CRC bits: no sample more or less.
     reg f_same; initial f_same = 1'b0;
     reg f_open; initial f_open = 1'b0;
     reg f_whole; initial f_whole = 1'b0;
