@@ -33,8 +33,12 @@ use text::{clock_ns, fields, real, whole, word_address, words, MARGIN_NS};
 const ENCODER_GIVES_UP_NS: u64 = 15_000;
 /// Delay that the bench's encoder adds between a clock edge and its data, in ns.
 pub(crate) const LAUNCH_NS: u64 = 12;
-/// The trigger pin's way through synchroniser, edge detection and transaction, and one cycle for its phase.
-pub(crate) const TRIGGER_CYCLES_MAX: u64 = 10;
+/// Clock edges from the trigger at its pin to the first falling edge of an EnDat clock: synchroniser, edge detection, strobe, transaction, clock generator, pin.
+pub(crate) const TRIGGER_CYCLES: u64 = 6;
+/// From the cycle in which the timer has its period to the first falling clock edge, in system clock cycles.
+const TIMER_CYCLES: u64 = 5;
+/// From the end of a frame at the encoder until the card has told everything and is ready, in ns, besides its way on the cable.
+const RESULT_NS: u64 = 4_000;
 /// Cycles that synchroniser and edge detection add to the measured line delay (the filter's come on top).
 pub(crate) const INPUT_CYCLES: u64 = 3;
 
@@ -45,7 +49,6 @@ pub(crate) struct Port {
     command: String,
     has_f2: u8,
     position_bits: u32,
-    mask: String,
     tcal_ns: String,
     tm_ns: String,
     cable_ns: String,
@@ -72,7 +75,6 @@ impl Port {
             command: format!("{:06b}", channel.command.code()),
             has_f2: u8::from(channel.command.has_f2()),
             position_bits: channel.position_bits,
-            mask: format!("{:012X}", (1u64 << channel.position_bits) - 1),
             tcal_ns: whole(request.tcal_max_ns),
             tm_ns: whole(tm_ns),
             cable_ns: real(cable_ns),
@@ -191,12 +193,29 @@ fn is_own_trigger(field: &str) -> bool {
     field == "skip" || field.starts_with("ignore_")
 }
 
-/// The bits of the position that results of each channel bring.
-fn masks(ports: &[Port], others: &[BenchParts]) -> Vec<Value> {
-    let of_endat = ports.iter().map(|p| (p.index, p.mask.clone()));
-    let of_others = others.iter().flat_map(|parts| parts.masks.clone());
-    let all = of_endat.chain(of_others);
+/// EnDat channels, and how far from its place a start bit may be.
+fn windows(card: &CardConfig) -> Vec<Value> {
+    let channels = card.endat_channels();
+    let row =
+        |(index, c): (usize, &ChannelConfig)| context! { index, cycles => c.start_window_cycles };
+    channels.map(row).collect()
+}
+
+/// The bits of the position that results of each channel that is not EnDat bring.
+fn masks(others: &[BenchParts]) -> Vec<Value> {
+    let all = others.iter().flat_map(|parts| parts.masks.clone());
     all.map(|(index, mask)| context! { index, mask }).collect()
+}
+
+/// Position bits of every channel, the last one first; 0 where it is not EnDat.
+fn widths(card: &CardConfig) -> String {
+    let bits = |c: &ChannelConfig| if c.is_endat() { c.position_bits } else { 0 };
+    let each = card
+        .channels
+        .iter()
+        .rev()
+        .map(|c| format!("6'd{}", bits(c)));
+    format!("{{{}}}", each.collect::<Vec<_>>().join(", "))
 }
 
 /// The test bench of a card; none for a port without a bus.
@@ -244,7 +263,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     )?;
     let power_up = power_up(card, &ports, !others.is_empty())?;
     let purpose = purpose::Parts::new(card, &ports)?;
-    let blocks = [&CARD, &CARD_CONFIG, &RESULT];
+    let blocks = [&CARD, &CARD_CONFIG, &CHANNEL_CONFIG, &RESULT];
     let blocks = blocks
         .into_iter()
         .chain(card.outputs.interrupt.then_some(&INTERRUPT))
@@ -276,7 +295,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         others => Serde(&others),
         endat => ports.iter().map(|p| p.index).collect::<Vec<_>>(),
         silent => others.iter().flat_map(|parts| parts.silent.clone()).collect::<Vec<_>>(),
-        masks => masks(&ports, &others),
+        masks => masks(&others),
         channels => Serde(ports),
         host => host.text,
         connections => Serde(host.connections),
@@ -289,13 +308,15 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         fault_ns => whole(cycle_ns + longest_ns(card, timeout) + ENCODER_GIVES_UP_NS),
         abort_ns => whole(1_000 * abort_us.unwrap_or(0) + MARGIN_NS),
         overrun_ns => whole(cycles_to_ns(shortest_frame.unwrap_or(0) / 2, hz)),
-        trigger_cycles_max => TRIGGER_CYCLES_MAX,
+        trigger_cycles => TRIGGER_CYCLES,
+        result_ns => whole(RESULT_NS + longest_ns(card, |c| cycles_at_least(c.spec.delay_max_ns(), hz))),
+        widths => widths(card),
         words => Serde(blocks.into_iter().flat_map(words).filter(|w| has_infos || !w.name.starts_with("RESULT_INFO_")).collect::<Vec<_>>()),
         has_irq => project.bus != HostBus::Uart,
         interrupt => card.outputs.interrupt.then(|| result_events(card)),
         direct => card.outputs.position,
         second => card.safety.second_interface,
-        fields => Serde([CARD_CONFIG, RESULT, DIRECT].iter().flat_map(fields).filter(|f| has_infos || !f.name.starts_with("INFO_")).collect::<Vec<_>>()),
+        fields => Serde([CARD_CONFIG, CHANNEL_CONFIG, RESULT, DIRECT].iter().flat_map(fields).filter(|f| has_infos || !f.name.starts_with("INFO_")).collect::<Vec<_>>()),
         block_stride => BLOCK_STRIDE,
         causes => causes(&CAUSES),
         identification => identification(card),
@@ -305,6 +326,19 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         every_trigger => every_trigger(card),
         measures => purpose::first_measured(card),
         tests => purpose::tests(card),
+        windows => windows(card),
+        timer_cycles => TIMER_CYCLES,
+        widest_ns => whole(purpose::widest_ns(card)),
+        alignment => card.line.alignment,
+        double_edge => card.line.double_edge,
+        bus => project.bus.name(),
+    };
+    let part = |name: &str, text: &str| template::render(name, text, &context);
+    let context = context! {
+        results => part("bench_results", include_str!("templates/bench_results.v.jinja"))?,
+        limits => part("bench_limits", include_str!("templates/bench_limits.v.jinja"))?,
+        limits_tasks => part("bench_limits_tasks", include_str!("templates/bench_limits_tasks.v.jinja"))?,
+        ..context
     };
     let text = template::render(
         "testbench",
@@ -321,13 +355,16 @@ pub(crate) fn result_events(card: &CardConfig) -> String {
 }
 
 /// Causes that the bench waits for.
-const CAUSES: [&str; 7] = [
+const CAUSES: [&str; 10] = [
+    "data_not_low",
     "no_start_bit",
+    "start_window",
     "crc",
     "f1",
     "f2",
     "data_not_falling",
     "trigger_overrun",
+    "unknown_command",
     "watchdog",
 ];
 

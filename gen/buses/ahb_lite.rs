@@ -8,7 +8,7 @@ struct AhbLite;
 
 const PORTS: &[(&str, &str)] = &[
     ("s_ahb_hsel", "hsel"),
-    ("s_ahb_htrans", "{hsel, 1'b0}"),
+    ("s_ahb_htrans", "htrans"),
     ("s_ahb_hwrite", "hwrite"),
     ("s_ahb_hsize", "3'd2"),
     ("s_ahb_haddr", "haddr"),

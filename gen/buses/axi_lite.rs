@@ -13,7 +13,7 @@ const PORTS: &[(&str, &str)] = &[
     ("s_axi_awvalid", "awvalid"),
     ("s_axi_awready", "awready"),
     ("s_axi_wdata", "wdata"),
-    ("s_axi_wstrb", "4'b1111"),
+    ("s_axi_wstrb", "wstrb"),
     ("s_axi_wvalid", "wvalid"),
     ("s_axi_wready", "wready"),
     ("s_axi_bresp", "bresp"),

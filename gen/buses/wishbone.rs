@@ -10,11 +10,11 @@ struct Wishbone;
 
 const PORTS: &[(&str, &str)] = &[
     ("wb_cyc_i", "wb_cyc"),
-    ("wb_stb_i", "wb_cyc"),
+    ("wb_stb_i", "wb_stb"),
     ("wb_we_i", "wb_we"),
     ("wb_adr_i", "wb_adr"),
     ("wb_dat_i", "wb_dat_to_card"),
-    ("wb_sel_i", "4'b1111"),
+    ("wb_sel_i", "wb_sel"),
     ("wb_dat_o", "wb_dat_from_card"),
     ("wb_ack_o", "wb_ack"),
     ("wb_err_o", "wb_err"),

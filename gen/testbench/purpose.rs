@@ -25,6 +25,8 @@ use minijinja::value::{Serde, Value};
 const RATES_HZ: [u64; 7] = [
     16_000_000, 8_000_000, 4_000_000, 2_000_000, 1_000_000, 200_000, 100_000,
 ];
+/// Bits of the widest position.
+const WIDEST_BITS: u64 = 48;
 /// Rates below this take a simulator long.
 pub(crate) const SLOW_HZ: u64 = 1_000_000;
 /// Fields of a request that the bench uses.
@@ -94,6 +96,15 @@ fn writes(card: &CardConfig) -> Vec<Value> {
         context! { address, value => format!("{:08X}", setting(card, r, n)) }
     });
     words.collect()
+}
+
+/// From a trigger to the end of everything where positions are as wide as they can be, in ns.
+pub(super) fn widest_ns(card: &CardConfig) -> u64 {
+    let widest = changed(card, |request| ChannelSpec {
+        position_bits: WIDEST_BITS,
+        ..request.clone()
+    });
+    widest.as_ref().map_or(0, cycle_ns)
 }
 
 /// The card at every usual rate that its system clock makes, in hertz.

@@ -17,7 +17,7 @@ use crate::testbench::purpose::{at_rates, configured_list, first_measured, setti
 use crate::testbench::text::{fields, real, word_address, words, MARGIN_NS};
 use crate::testbench::{
     causes, every_trigger, identification, result_events, Port, INPUT_CYCLES, LAUNCH_NS,
-    RESET_CYCLES, TRIGGER_CYCLES_MAX,
+    RESET_CYCLES, TRIGGER_CYCLES,
 };
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::services;
@@ -189,7 +189,7 @@ pub fn artifact(
         cycles_per_us => card.system_hz.div_ceil(1_000_000),
         margin_ns => MARGIN_NS,
         settle_cycles,
-        trigger_cycles_max => TRIGGER_CYCLES_MAX,
+        trigger_cycles_max => TRIGGER_CYCLES,
         abort_us => ABORT_US,
         measuring_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
         launch_ns => LAUNCH_NS,

@@ -2,6 +2,7 @@
 
 pub mod area;
 mod bus_bench;
+mod edits;
 mod formal;
 mod lint;
 pub mod mutations;

@@ -155,7 +155,8 @@ fn every_port_of_every_subject_does_what_the_design_does() {
     for preset in subjects() {
         blocks_agree(preset, CYCLES);
         let bench = Emission::named(preset).unwrap().bench.text;
-        if !bench.contains("dut.u_core.") {
+        let sets = ["\n        end_quiet_time;", "turn_forward("];
+        if !sets.iter().any(|task| bench.contains(task)) {
             ports_agree(preset);
         }
     }

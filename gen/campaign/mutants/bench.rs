@@ -164,12 +164,10 @@ pub fn sums_alone(subject: &Subject, cycles: usize) -> Result<Vec<u64>, GenError
 /// Runs the bench of a card as it is.
 pub fn record(emission: &Emission) -> Result<Recording, GenError> {
     let program = Program::new(emission, &[])?;
-    program.play(&["+inputs"])?;
+    // What is set inside a card, a recording of its pins does not have.
+    let sums = program.play(&["+inputs", "+no_deposit"])?.0.sums;
     let inputs = scratch::read(&program.folder.path().join("inputs.txt"))?;
-    Ok(Recording {
-        inputs,
-        sums: program.whole.sums,
-    })
+    Ok(Recording { inputs, sums })
 }
 
 /// A module with all its mutants, chosen by a plusarg.

@@ -68,3 +68,39 @@
             end
         end
     endtask
+
+    // Strobes without select, halves of a word in either order, a word that is read again; at the word that is free for the host.
+    task bus_limits;
+        begin
+            transfer(1'b1, CARD_CONFIG_HOLD, 32'hA1B2C300);
+            // Another chip's write.
+            bus_address = 3'd5;
+            bus_data_to_card = 16'h4000 | CARD_CONFIG_HOLD[10:0];
+            #(CLK_NS);
+            bus_wr_n = 1'b0;
+            #(STROBE_NS);
+            bus_wr_n = 1'b1;
+            #(CLK_NS);
+            bus_address = 3'd7;
+            bus_data_to_card = 16'hFFFF;
+            #(CLK_NS);
+            bus_wr_n = 1'b0;
+            #(STROBE_NS);
+            bus_wr_n = 1'b1;
+            host_idle;
+            #(SETTLE_NS);
+            transfer(1'b0, CARD_CONFIG_HOLD, 32'd0);
+            check("word after another chip's write", answer, 32'hA1B2C300);
+            read_half(3'd6);
+            check("low half, once more", half, 16'hC300);
+            read_half(3'd7);
+            check("high half, once more", half, 16'hA1B2);
+            transfer(1'b1, CARD_CONFIG_HOLD, 32'h4D5E6F00);
+            transfer(1'b1, CARD_CONFIG_TRIGGER_PERIOD, 32'h00345678);
+            transfer(1'b0, CARD_CONFIG_HOLD, 32'd0);
+            check("word of the first of two writes", answer, 32'h4D5E6F00);
+            transfer(1'b0, CARD_CONFIG_TRIGGER_PERIOD, 32'd0);
+            check("word of the second of two writes", answer, 32'h00345678);
+            transfer(1'b1, CARD_CONFIG_HOLD, 32'd0);
+        end
+    endtask

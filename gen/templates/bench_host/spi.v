@@ -4,6 +4,7 @@
     wire spi_miso, spi_miso_oe;
     reg [7:0] spi_byte;
     reg [15:0] crc_sum;
+    reg [7:0] want_status;
     reg [31:0] words_in [0:255];
 
     task host_idle;
@@ -11,6 +12,7 @@
             spi_sck = 1'b0;
             spi_cs_n = 1'b1;
             spi_mosi = 1'b0;
+            want_status = 8'hA0;
         end
     endtask
 
@@ -54,7 +56,7 @@
             check("spi_miso_oe when selected", {47'd0, spi_miso_oe}, 48'd1);
             crc_sum = 16'hFFFF;
             send_byte(command);
-            check("status byte", {40'd0, spi_byte}, 48'hA0);
+            check("status byte", {40'd0, spi_byte}, {40'd0, want_status});
             send_byte(address[15:8]);
             send_byte(address[7:0]);
             send_byte(words[7:0]);
@@ -106,3 +108,73 @@
     function [31:0] word(input integer index);
         word = words_in[index];
     endfunction
+
+    // A word of a write, and the sum behind it.
+    task send_word(input [31:0] value, input [15:0] spoilt);
+        begin
+            send_byte(value[31:24]);
+            #(7.0 * SCK_HALF_NS);
+            send_byte(value[23:16]);
+            send_byte(value[15:8]);
+            send_byte(value[7:0]);
+            crc_sum = crc_sum ^ spoilt;
+            exchange_byte(crc_sum[15:8]);
+            exchange_byte(crc_sum[7:0]);
+            crc_sum = 16'hFFFF;
+        end
+    endtask
+
+    task check_scratch(input [8*40-1:0] what, input [31:0] value);
+        begin
+            read_words(CARD_CONFIG_HOLD, 1);
+            check(what, word(0), value);
+        end
+    endtask
+
+    // Writes of several words, pauses, frames that are left, wrong check sums, frames to nobody; at the words of the card's configuration.
+    task bus_limits;
+        begin
+            begin_frame(8'h02, CARD_CONFIG_TRIGGER_PERIOD, 2);
+            #(SETTLE_NS);
+            send_word(32'h00345678, 16'd0);
+            #(SETTLE_NS);
+            send_word(32'hA1B2C300, 16'd0);
+            end_frame;
+            #(SETTLE_NS);
+            check_scratch("second word of a write", 32'hA1B2C300);
+            read_words(CARD_CONFIG_TRIGGER_PERIOD, 1);
+            check("first word of a write", word(0), 32'h00345678);
+            // A frame that ends before its check sum writes nothing.
+            begin_frame(8'h02, CARD_CONFIG_HOLD, 1);
+            send_byte(8'hFF);
+            send_byte(8'hFF);
+            send_byte(8'hFF);
+            send_byte(8'h00);
+            end_frame;
+            #(SETTLE_NS);
+            check_scratch("word after a frame that was left", 32'hA1B2C300);
+            // Neither does one with a wrong sum, whichever half is wrong; nor what is no command.
+            begin_frame(8'h02, CARD_CONFIG_HOLD, 1);
+            send_word(32'hFFFFFF00, 16'h0100);
+            end_frame;
+            #(SETTLE_NS);
+            want_status = 8'hA2;
+            check_scratch("word after a wrong check sum", 32'hA1B2C300);
+            begin_frame(8'h02, CARD_CONFIG_HOLD, 1);
+            send_word(32'hFFFFFF00, 16'h0001);
+            end_frame;
+            #(SETTLE_NS);
+            check_scratch("word after a wrong check sum, low half", 32'hA1B2C300);
+            begin_frame(8'h06, CARD_CONFIG_HOLD, 1);
+            send_word(32'hFFFFFF00, 16'd0);
+            end_frame;
+            #(SETTLE_NS);
+            check_scratch("word after a frame to nobody", 32'hA1B2C300);
+            begin_frame(8'h02, CARD_CONFIG_HOLD, 1);
+            send_word(32'd0, 16'd0);
+            end_frame;
+            #(SETTLE_NS);
+            want_status = 8'hA0;
+            check_scratch("word after a right check sum", 32'd0);
+        end
+    endtask

@@ -92,3 +92,64 @@
     function [31:0] word(input integer index);
         word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
     endfunction
+
+    task send_word(input [31:0] value);
+        begin
+            send_byte(value[31:24]);
+            send_byte(value[23:16]);
+            send_byte(value[15:8]);
+            send_byte(value[7:0]);
+        end
+    endtask
+
+    // Writes of several words without a pause, reads of 33 words, addresses beyond the map, a command that stops in the middle.
+    task bus_limits;
+        begin
+            send_command(8'h01, 2, CARD_CONFIG_TRIGGER_PERIOD);
+            send_word(32'h00345678);
+            send_word(32'hA1B2C300);
+            #(SETTLE_NS);
+            read_words(CARD_CONFIG_TRIGGER_PERIOD, 2);
+            check("first word of a write", word(0), 32'h00345678);
+            check("second word of a write", word(1), 32'hA1B2C300);
+            // Beyond the map nothing is written, and 0 is read.
+            write_word(CARD_CONFIG_HOLD | 32'h00000800, 32'hFFFFFF00);
+            write_word(CARD_CONFIG_HOLD | 32'h80000000, 32'hFFFFFF00);
+            #(SETTLE_NS);
+            read_words(CARD_CONFIG_HOLD, 1);
+            check("word after writes beyond the map", word(0), 32'hA1B2C300);
+            read_words(CARD_CONFIG_HOLD | 32'h00010000, 1);
+            check("word beyond the map", word(0), 32'd0);
+            if (level > 0) begin
+                read_words(CARD_ID, 33);
+                #(UART_BIT_NS * 20.0);
+                check("bytes of 33 words", received, 132);
+            end
+            if (level > 0 && may_deposit) begin
+                // A command that stops is forgotten after 100 ms, and not much before.
+                $display("    set inside the card: dut.u_bridge.idle_us, almost 100 ms");
+                received = 0;
+                send_byte(8'h02);
+                send_byte(8'h01);
+                @(negedge clk);
+                dut.u_bridge.idle_us = 17'd99_900;
+                #(UART_BIT_NS * 10.0);
+                send_byte(8'h00);
+                send_byte(8'h00);
+                send_byte(CARD_CONFIG_HOLD[15:8]);
+                send_byte(CARD_CONFIG_HOLD[7:0]);
+                #(UART_BIT_NS * 80.0);
+                check("bytes after a pause of less than 100 ms", received, 4);
+                check("word after a pause", word(0), 32'hA1B2C300);
+                send_byte(8'h02);
+                send_byte(8'h01);
+                @(negedge clk);
+                dut.u_bridge.idle_us = 17'd99_998;
+                #(10_000.0);
+                read_words(CARD_CONFIG_HOLD, 1);
+                check("word after a command that stopped", word(0), 32'hA1B2C300);
+            end
+            write_word(CARD_CONFIG_HOLD, 32'd0);
+            #(SETTLE_NS);
+        end
+    endtask
