@@ -122,6 +122,10 @@ impl Reading {
         let width_bits = field!(RESULT.position_high.width).of(high);
         let delay_high = field!(RESULT.age_recovery.delay_high).of(age);
         let delay_low = field!(RESULT.evidence.delay_cycles);
+        // Special bits have the place of the upper flags.
+        let has_special_bits = protocol.row().has_special_bits;
+        let line = FLAGS[1].of(status);
+        let upper_flags = if has_special_bits { 0 } else { line };
         Self {
             position,
             width_bits,
@@ -130,10 +134,9 @@ impl Reading {
             age_us: field!(RESULT.age_recovery.age_us).of(age) as u16,
             delay_cycles: (delay_high << delay_low.width | delay_low.of(evidence)) as u16,
             recovery_cycles: field!(RESULT.age_recovery.recovery_cycles).of(age) as u16,
-            special_bits: (protocol.row().has_special_bits)
-                .then(|| field!(RESULT.status.line).of(status) as u8),
+            special_bits: has_special_bits.then_some(line as u8),
             cause: causes::number(field!(RESULT.status.cause).of(status) as u8, protocol),
-            flags: FLAGS[0].of(evidence) | FLAGS[1].of(status) << FLAGS[0].width,
+            flags: FLAGS[0].of(evidence) | upper_flags << FLAGS[0].width,
             valid: is(status, field!(RESULT.status.valid)),
             fresh: is(status, field!(RESULT.status.fresh)),
             stale: is(age, field!(RESULT.age_recovery.stale)),
@@ -172,11 +175,7 @@ impl Reading {
     /// Names of all that was wrong with the frame, in a channel that speaks this protocol; the primary cause is one of them.
     pub fn flag_names(&self, protocol: Protocol) -> impl Iterator<Item = &'static str> {
         let [beside, above] = [self.flags, self.flags >> FLAGS[0].width];
-        // Special bits have the place of these flags.
-        let is_flags = move |(field, _): &(&Field, u32)| {
-            !(protocol.row().has_special_bits && *field == FLAGS[1])
-        };
-        let fields = FLAGS.into_iter().zip([beside, above]).filter(is_flags);
+        let fields = FLAGS.into_iter().zip([beside, above]);
         fields.flat_map(move |(field, flags)| {
             let named = match field.values_in(protocol) {
                 Values::Bits(named) => named,
