@@ -229,7 +229,7 @@ impl Logic for SsiPort {
         // No upset keeps the clock LOW.
         self.clk.d.next = self.state.q.val() != self.at_low.val();
         self.is_astray.next = self.state.q.val().xor()
-            ^ (self.clk.q.val() == (self.state.q.val() == self.at_low.val()));
+            | (self.clk.q.val() == (self.state.q.val() == self.at_low.val()));
         if self.state.q.val() == self.at_rest.val() {
             if self.trigger.val() {
                 self.unknown.d.next = !self.frame.val().get_bit(2);

@@ -1,6 +1,8 @@
 //! A reset in the middle of a frame: no wrong position afterwards, whenever the next trigger comes.
 
-use super::run::{Run, Settings, SYSTEM_MHZ};
+use super::run::{engine_for, Run, Settings, SYSTEM_MHZ};
+use endat_hdl::protocols::ssi::cause;
+use endat_hdl::protocols::SsiSpec;
 use endat_sim::rng::Rng;
 use endat_sim::ssi::EncoderConfig;
 use endat_sim::US;
@@ -14,6 +16,11 @@ const RECOVERY_MAX_US: u64 = 20;
 const POSITION: u64 = 0x155_32D3;
 
 fn start(twice: bool, repeats: bool) -> Run {
+    let (settings, encoder) = asked(twice, repeats);
+    Run::new(settings, encoder)
+}
+
+fn asked(twice: bool, repeats: bool) -> (Settings, EncoderConfig) {
     let encoder = EncoderConfig {
         position_bits: WIDTH,
         position: POSITION,
@@ -26,7 +33,7 @@ fn start(twice: bool, repeats: bool) -> Run {
         period_cycles: PERIOD,
         recovery_limit_cycles: RECOVERY_MAX_US * SYSTEM_MHZ + 10,
     };
-    Run::new(settings, encoder)
+    (settings, encoder)
 }
 
 /// Resets the port at so many moments of a frame, triggers it up to 10 us later, and again and again.
@@ -82,12 +89,7 @@ fn port_shows_no_wrong_position_after_a_reset_at_any_moment() {
 fn port_takes_no_trigger_after_a_reset_until_the_recovery_time_has_passed() {
     let mut run = start(false, true);
     run.reset();
-    let mut waited = 0;
-    while run.get("busy") == 1 {
-        run.cycles(1);
-        waited += 1;
-        assert!(waited < 1_000);
-    }
+    let waited = run.waits();
     let needed = RECOVERY_MAX_US * SYSTEM_MHZ + PERIOD;
     assert!((needed..needed + 30).contains(&waited), "{waited}");
     // A trigger within it is lost, and the next result says so.
@@ -111,12 +113,7 @@ fn port_waits_after_a_frame_whose_end_is_high() {
     run.trigger();
     run.cycles(19 * PERIOD + 2 * PERIOD);
     assert_eq!(run.get("cause"), 3);
-    assert_eq!(run.get("busy"), 1);
-    let mut waited = 0;
-    while run.get("busy") == 1 {
-        run.cycles(1);
-        waited += 1;
-    }
+    let waited = run.waits();
     assert!(
         waited >= RECOVERY_MAX_US * SYSTEM_MHZ - 2 * PERIOD,
         "{waited}"
@@ -124,4 +121,66 @@ fn port_waits_after_a_frame_whose_end_is_high() {
     // The frame before has left the encoder.
     run.set("position_bits", WIDTH.into());
     assert!(run.is_good());
+}
+
+/// Power-up of the card may come in the middle of a frame, too: the encoder has a supply of its own.
+#[test]
+fn port_takes_no_trigger_after_power_up_until_the_recovery_time_has_passed() {
+    let (settings, encoder) = asked(false, true);
+    let mut run = Run::powered(engine_for(&SsiSpec::default()), settings, encoder);
+    let waited = run.waits();
+    let needed = RECOVERY_MAX_US * SYSTEM_MHZ + PERIOD;
+    assert!((needed..needed + 30).contains(&waited), "{waited}");
+    assert!(run.is_good());
+}
+
+/// A frame that an upset has ended leaves the encoder in the middle of its own, where DATA is any bit.
+#[test]
+fn port_waits_after_an_upset_until_the_recovery_time_has_passed() {
+    let start = start(false, true);
+    let names: Vec<String> = start.engine.nets().map(String::from).collect();
+    let state = (start.engine.registers()).find(|register| names[*register] == "state");
+    let state = state.unwrap();
+    let bits = 0..start.engine.width_bits(state);
+    // Where DATA is HIGH at the end, and where it is LOW there and goes HIGH afterwards.
+    let moments = (3 * PERIOD..20 * PERIOD).step_by(17);
+    for (bit, cycle) in bits.flat_map(|bit| moments.clone().map(move |n| (bit, n))) {
+        let mut run = start.clone();
+        run.trigger();
+        run.cycles(cycle);
+        run.engine.flip(state, bit);
+        let waited = run.waits();
+        let what = format!("{bit} {cycle}: {waited}");
+        assert!(waited >= RECOVERY_MAX_US * SYSTEM_MHZ, "{what}");
+        let upset = u128::from(cause::flag(cause::UPSET));
+        assert_eq!(run.get("flags") & upset, upset, "{what}");
+        assert_eq!(run.fresh(), None, "{what}");
+        assert!(run.is_good(), "{what}");
+    }
+}
+
+/// DATA HIGH ends the wait; if DATA stays LOW, the longest recovery time does.
+#[test]
+fn port_takes_a_trigger_as_soon_as_data_is_high_again() {
+    let start = start(false, false);
+    for tm_us in [3, 11, 19] {
+        let mut run = start.clone();
+        run.encoder.config.tm = tm_us * US;
+        run.trigger();
+        run.cycles(u64::from(WIDTH + 1) * PERIOD);
+        while !run.encoder.data() {
+            assert_eq!(run.get("busy"), 1, "{tm_us}");
+            run.cycles(1);
+        }
+        let waited = run.waits();
+        assert!(waited <= 8, "{tm_us}: {waited}");
+        assert!(run.is_good(), "{tm_us}");
+    }
+    let mut run = start.clone();
+    run.trigger();
+    run.cycles((u64::from(WIDTH) + 1) * PERIOD);
+    run.broken = Some(false);
+    let waited = run.waits();
+    let most = RECOVERY_MAX_US * SYSTEM_MHZ + 2 * PERIOD + 30;
+    assert!(waited <= most, "{waited}");
 }

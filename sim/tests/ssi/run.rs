@@ -52,7 +52,15 @@ impl Run {
     }
 
     /// The same of a port that is there.
-    pub fn of(mut engine: Compiled, settings: Settings, encoder: EncoderConfig) -> Self {
+    pub fn of(engine: Compiled, settings: Settings, encoder: EncoderConfig) -> Self {
+        let mut run = Self::powered(engine, settings, encoder);
+        run.cycles(40);
+        assert!(run.ends());
+        run
+    }
+
+    /// A port in the moment of power-up.
+    pub fn powered(mut engine: Compiled, settings: Settings, encoder: EncoderConfig) -> Self {
         for (name, value) in [
             ("data_i", 1),
             ("period_cycles", settings.period_cycles.into()),
@@ -67,15 +75,12 @@ impl Run {
             let port = engine.port(name);
             engine.set(port, value);
         }
-        let mut run = Self {
+        Self {
             engine,
             encoder: Encoder::new(encoder),
             cycle: 0,
             broken: None,
-        };
-        run.cycles(40);
-        assert!(run.ends());
-        run
+        }
     }
 
     pub fn get(&mut self, name: &str) -> u128 {
@@ -127,6 +132,15 @@ impl Run {
             self.cycles(10);
         }
         true
+    }
+
+    /// How long it is busy from here on, in cycles.
+    pub fn waits(&mut self) -> u64 {
+        let start = self.cycle;
+        while self.get("busy") == 1 && self.cycle < start + LIMIT_CYCLES {
+            self.cycles(1);
+        }
+        self.cycle - start
     }
 
     /// The position that is shown as that of the last trigger.
