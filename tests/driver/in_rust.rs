@@ -817,8 +817,24 @@ fn name_plates_are_decoded_as_the_driver_in_c_does() {
         let told = [plate.id, plate.serial].map(|number| number.unwrap().to_string());
         let wanted = [parts[6], parts[7]].map(|text| text.trim_matches('"'));
         assert_eq!(told, wanted);
-        assert_eq!(plate.steps, None);
+        assert_eq!((plate.steps, plate.rotary), (None, None));
         seen += 1;
     }
     assert_eq!(seen, 4);
+    for (kind, rotary) in [(0x8000, true), (0x7FFF, false)] {
+        let words = [
+            ("position_bits", 0x4025),
+            ("encoder_type", kind),
+            ("steps_low", 1),
+            ("steps_high", 0x0200),
+            ("revolutions", 4096),
+        ];
+        let plate = NamePlate::of(|name| Some(words.iter().find(|word| word.0 == name)?.1));
+        let steps = (plate.steps, plate.revolutions);
+        assert_eq!(
+            (plate.position_bits, plate.rotary),
+            (Some(37), Some(rotary))
+        );
+        assert_eq!((steps, plate.id), ((Some(0x0200_0001), Some(4096)), None));
+    }
 }

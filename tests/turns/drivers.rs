@@ -63,6 +63,14 @@ fn vectors() -> Vec<Vector> {
             [0x1FF_FFFF, 1],
             2,
         ),
+        // More than a turn at once.
+        (
+            Ssi,
+            words(25, 12, range::ROTARY, 0),
+            rotary(13, 12, 13),
+            [7, 3 << 13 | 12],
+            (3 << 13) + 5,
+        ),
         (
             Ssi,
             words(24, 0, range::LINEAR, 0),

@@ -2,9 +2,10 @@
 
 mod crowd;
 
-use crate::hosts::{quick_service_port, slow_card, Served, SERVICE};
+use crate::hosts::{quick_service_port, quicker_service_file, slow_card, Served, SERVICE};
 use crate::program::{self, begun, Dir};
 use crate::tools;
+use endat_gen::config::parse;
 use endat_gen::virtual_card::Door;
 use endat_sim::rng::Rng;
 use serde_json::Value;
@@ -573,7 +574,9 @@ fn a_browser_shows_the_page_and_obeys_its_keys() {
 /// Catches a page that makes faults in a card that nobody has called a virtual one, and one whose words are not looked at.
 #[test]
 fn only_a_page_that_rehearses_makes_faults() {
-    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let text = fs::read_to_string(quicker_service_file()).unwrap();
+    let project = parse("service.toml", &text).unwrap();
+    let card = Served::new(project, || Door::tcp("127.0.0.1:0").unwrap());
     let inject = "/api/inject?fault=crc&channel=1&value=1000000";
     let plain = View::local("view_no_rehearsal", &card.name);
     assert_eq!(plain.ask("POST", inject).0, 405);
@@ -609,10 +612,16 @@ fn only_a_page_that_rehearses_makes_faults() {
         assert!(begin.elapsed() < Duration::from_secs(60), "never");
         thread::sleep(Duration::from_millis(100));
     }
-    // The card holds the last good position, and so does the page, as `read` and `monitor` do.
-    let held = view.until("a position that is held", |now| {
-        let one = &now["channels"][1];
-        one["fresh"] == false && one["raw"].is_string()
+    // A channel without its encoder takes no triggers, and its rows have no position. The card holds the last good one, and so does the page, as
+    // `read` and `monitor` do.
+    let unplug = view.ask("POST", "/api/inject?fault=unplug&channel=1");
+    assert_eq!(unplug.0, 200, "{unplug:?}");
+    let held = view.until("an unplugged channel", |now| {
+        now["channels"][1]["cause"] == "not_taken"
     });
-    assert!(held["channels"][1]["value"].is_number(), "{held}");
+    let one = &held["channels"][1];
+    assert!(
+        one["fresh"] == false && one["raw"].is_string() && one["value"].is_number(),
+        "{held}"
+    );
 }

@@ -124,6 +124,7 @@ fn a_port_with_special_bits_works_after_an_upset_of_any_register() {
 fn silent_upsets(moments: u64) -> (usize, Vec<String>) {
     let (asked, extras) = special(false);
     let start = start(&asked, extras);
+    assert!(start.clone().is_good());
     let cycles = (u64::from(WIDTH) + 8) * PERIOD + 300;
     let names: Vec<String> = start.engine.nets().map(String::from).collect();
     let registers: Vec<usize> = start.engine.registers().collect();

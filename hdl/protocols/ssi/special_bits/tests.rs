@@ -81,4 +81,20 @@ fn parity_is_of_all_bits_before_it() {
     let mut odd = block(&[], &[ParityOdd]);
     assert_eq!(frame(&mut odd, 3, &[&bits("1010")]), [1 << 3, 0]);
     assert_eq!(frame(&mut odd, 3, &[&bits("1011")]), [0, 0]);
+    // With an odd number of ones in the first copy the second one begins anew, too.
+    assert_eq!(frame(&mut odd, 3, &[&bits("1011"), &bits("1011")]), [0, 0]);
+}
+
+/// The CRC of 101 by long division, and a bit after it that is not of it.
+#[test]
+fn crc_begins_anew_with_each_copy() {
+    let bits = |text: &str| text.bytes().map(|b| b - b'0').collect::<Vec<_>>();
+    let mut uut = block(&[], &[Crc6, Ignored]);
+    let [good, bad] = ["1010011111", "1010011011"].map(bits);
+    assert_eq!(frame(&mut uut, 3, &[&good]), [0, 0]);
+    assert_eq!(frame(&mut uut, 3, &[&good, &good]), [0, 0]);
+    for copies in [[&bad, &good], [&good, &bad]] {
+        let copies = copies.map(|copy| &copy[..]);
+        assert_eq!(frame(&mut uut, 3, &copies), [1 << 11, 0]);
+    }
 }
