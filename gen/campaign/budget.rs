@@ -53,7 +53,9 @@ const CRC_BOUND_PER_MILLE: f64 = 1000.0 / 32.0;
 
 /// A port of another protocol, whose causes have other numbers, and whose positions have another check sum or none.
 fn is_other(row: &Row) -> bool {
-    of_port(row, ssi::SUBJECT) || of_port(row, t_format::SUBJECT)
+    [ssi::SUBJECT, ssi::SUBJECT_SPECIAL, t_format::SUBJECT]
+        .iter()
+        .any(|subject| of_port(row, subject))
 }
 
 /// One of this port, in whatever kind of frame.
@@ -77,7 +79,7 @@ fn is_setting(row: &Row) -> bool {
 const SSI_TWICE: &str = "ssi_port position_twice";
 
 /// All of them.
-pub const BUDGETS: [Budget; 25] = [
+pub const BUDGETS: [Budget; 26] = [
     Budget {
         campaign: "upsets",
         what: "wrong positions told as good",
@@ -123,6 +125,14 @@ pub const BUDGETS: [Budget; 25] = [
         what: "wrong positions of the SSI port told as good",
         bad: |r| r.class == "silent" && of_port(r, ssi::SUBJECT),
         of: |r| is_case(r) && of_port(r, ssi::SUBJECT),
+        limit_per_mille: 5.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "wrong positions of the SSI port with special bits told as good",
+        bad: |r| r.class == "silent" && of_port(r, ssi::SUBJECT_SPECIAL),
+        of: |r| is_case(r) && of_port(r, ssi::SUBJECT_SPECIAL),
         limit_per_mille: 5.0,
         is_asserted: true,
     },

@@ -306,6 +306,8 @@ fn other_ports_keep_their_budgets(moments: &str, step: &str, cases: &str) {
             keeps_its_budgets(campaign, &["--subject", subject, option, value]);
         }
     }
+    let special = ["--subject", "ssi_port_special", "--moments", moments];
+    keeps_its_budgets("upsets", &special);
 }
 
 #[test]
@@ -322,7 +324,11 @@ fn ports_of_other_protocols_keep_their_budgets_everywhere() {
 /// A campaign that finds nothing is worth nothing: the clock of an SSI encoder and the driver of a T-format port are seen.
 #[test]
 fn flip_of_an_other_port_s_pin_is_seen() {
-    for (subject, only) in [("ssi_port", "clk"), ("t_format_port", "exchange.phase")] {
+    for (subject, only) in [
+        ("ssi_port", "clk"),
+        ("ssi_port_special", "special_0."),
+        ("t_format_port", "exchange.phase"),
+    ] {
         let more = ["--subject", subject, "--only", only, "--moments", "30"];
         let outcome = run(&[&["campaign", "upsets"], &more[..]].concat());
         let line = outcome

@@ -38,7 +38,7 @@ pub struct CampaignArgs {
     /// Of faults: at every N-th quarter of a bit [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     step: Option<String>,
-    /// Of upsets, faults, garbage: only this port, t_format_port and ssi_port among them; of upsets also card, card_safety; of mutants: only this card [default: all]
+    /// Of upsets, faults, garbage: only this port, t_format_port and ssi_port among them; of upsets also ssi_port_special, card, card_safety; of mutants: only this card [default: all]
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
     /// Of upsets: only registers whose hierarchical name begins so, or so (a.b,a.c); of mutants: only blocks

@@ -160,49 +160,54 @@ struct Subjects {
     ports: Vec<Port>,
     is_t_format: bool,
     is_ssi: bool,
+    is_ssi_special: bool,
     card: Option<CardSubject>,
 }
 
-/// Of the random cases, the ports of other protocols and the card have an eighth each, if others are there.
+/// Of the random cases, each subject but the first one has an eighth.
 const SHARE: u64 = 8;
 
 /// Upsets of these subjects.
 fn upsets(subjects: &Subjects, draw: Draw, seed: u64, only: &str) -> Made {
-    let Subjects {
-        ports,
-        is_t_format,
-        is_ssi,
-        card,
-    } = subjects;
-    let flags = [!ports.is_empty(), *is_t_format, card.is_some(), *is_ssi];
-    let count = flags.into_iter().filter(|is_there| *is_there).count() as u64;
-    let share = |cases: u64, index: usize| match (count, flags) {
-        (1, _) => cases,
-        // The first one there has the rest.
-        (_, flags) if !flags[..index].contains(&true) => cases - (count - 1) * (cases / SHARE),
-        _ => cases / SHARE,
-    };
-    let drawn = |index: usize| match draw {
-        Draw::Random { cases } => Draw::Random {
-            cases: share(cases, index),
-        },
-        grid => grid,
-    };
-    let mut joined = vec![];
-    if !ports.is_empty() {
-        joined.push(boxed(Upsets::new(ports, drawn(0), seed, only))?);
+    let mut makers: Vec<Box<dyn Fn(Draw) -> Made + '_>> = vec![];
+    if !subjects.ports.is_empty() {
+        makers.push(Box::new(|draw| {
+            boxed(Upsets::new(&subjects.ports, draw, seed, only))
+        }));
     }
-    if *is_t_format {
-        let made = OtherUpsets::<t_format::TFormat>::new(drawn(1), seed, only);
-        joined.push(boxed(made)?);
+    if subjects.is_t_format {
+        makers.push(Box::new(|draw| {
+            boxed(OtherUpsets::<t_format::TFormat>::new(draw, seed, only))
+        }));
     }
-    if *is_ssi {
-        joined.push(boxed(OtherUpsets::<ssi::Ssi>::new(drawn(3), seed, only))?);
+    if subjects.is_ssi {
+        makers.push(Box::new(|draw| {
+            boxed(OtherUpsets::<ssi::Ssi<false>>::new(draw, seed, only))
+        }));
     }
-    if let Some(card) = card {
-        joined.push(Box::new(CardUpsets::new(*card, drawn(2), seed, only)?));
+    if subjects.is_ssi_special {
+        makers.push(Box::new(|draw| {
+            boxed(OtherUpsets::<ssi::Ssi<true>>::new(draw, seed, only))
+        }));
     }
-    Ok(Box::new(Joined(joined)))
+    if let Some(card) = subjects.card {
+        makers.push(Box::new(move |draw| {
+            Ok(Box::new(CardUpsets::new(card, draw, seed, only)?) as _)
+        }));
+    }
+    let others = makers.len().saturating_sub(1) as u64;
+    let made = makers.iter().enumerate().map(|(n, make)| {
+        make(match (draw, n) {
+            (Draw::Random { cases }, 0) => Draw::Random {
+                cases: cases - others * (cases / SHARE),
+            },
+            (Draw::Random { cases }, _) => Draw::Random {
+                cases: cases / SHARE,
+            },
+            (grid, _) => grid,
+        })
+    });
+    Ok(Box::new(Joined(made.collect::<Result<_, _>>()?)))
 }
 
 /// Spoilt frames of the T-format port, and of the SSI port, for each of EnDat's, if those are there, too.
@@ -221,7 +226,7 @@ fn disturbed(
     subjects: &Subjects,
     of_ports: Result<Box<dyn Campaign>, GenError>,
     of_t_format: impl FnOnce() -> Result<OtherFrames<t_format::TFormat>, CampaignError>,
-    of_ssi: impl FnOnce() -> Result<OtherFrames<ssi::Ssi>, CampaignError>,
+    of_ssi: impl FnOnce() -> Result<OtherFrames<ssi::Ssi<false>>, CampaignError>,
 ) -> Made {
     let mut joined = vec![];
     if !subjects.ports.is_empty() {
@@ -241,6 +246,7 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
     let chosen = arguments.subject.as_deref();
     let is_t_format = chosen.is_none_or(|name| name == t_format::SUBJECT);
     let is_ssi = chosen.is_none_or(|name| name == ssi::SUBJECT);
+    let is_ssi_special = chosen.is_none_or(|name| name == ssi::SUBJECT_SPECIAL);
     let card = chosen.map_or(Some(CardSubject::Plain), CardSubject::named);
     let ports: Vec<Port> = match chosen {
         Some(name) => Port::named().filter(|port| port.name() == name).collect(),
@@ -248,10 +254,12 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
     };
     let is_upsets = matches!(arguments.name, Name::Upsets);
     let has_others = is_t_format || is_ssi;
-    if ports.is_empty() && !(has_others || is_upsets && card.is_some()) {
+    let has_more = card.is_some() || is_ssi_special;
+    if ports.is_empty() && !(has_others || is_upsets && has_more) {
         let mut names: Vec<&str> = Port::named().map(Port::name).collect();
         names.extend([t_format::SUBJECT, ssi::SUBJECT]);
         if is_upsets {
+            names.push(ssi::SUBJECT_SPECIAL);
             names.extend(CardSubject::ALL.map(CardSubject::name));
         }
         return Err(GenError::input(format!(
@@ -271,6 +279,7 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
         ports,
         is_t_format,
         is_ssi,
+        is_ssi_special,
         card,
     };
     Ok(match arguments.name {

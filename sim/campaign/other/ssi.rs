@@ -1,15 +1,19 @@
-//! The SSI port of a card at its encoder, with one copy of the position and with two.
+//! The SSI port of a card at its encoder: with one copy of the position, with two, and with special bits.
 
 use super::{Device, Plan};
 use crate::campaign::CampaignError;
-use crate::ssi::{Defect, Encoder, EncoderConfig};
+use crate::ssi::{Defect, Encoder, EncoderConfig, Extra};
 use crate::{rng::Rng, Time, NS, US};
 use endat_hdl::protocols::ssi::port::{frame, SsiPort};
+use endat_hdl::protocols::ssi::specials::{Special, Specials};
+use endat_hdl::protocols::SsiSpec;
 use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 
 /// Its name in tables.
 pub const SUBJECT: &str = "ssi_port";
+/// Name of the port with special bits.
+pub const SUBJECT_SPECIAL: &str = "ssi_port_special";
 const SYSTEM_MHZ: u64 = 32;
 const PERIOD_CYCLES: u64 = 32;
 const POSITION_BITS: u32 = 25;
@@ -39,14 +43,28 @@ static CHANGES: [(&str, u64); 5] = [
     ("frame", 31),
 ];
 
-/// An encoder in a lane.
+/// An encoder in a lane; `SPECIAL`: a power fail bit and a parity bit follow its position.
 #[derive(Clone)]
-pub struct Ssi {
+pub struct Ssi<const SPECIAL: bool> {
     encoder: Encoder,
     sound: EncoderConfig,
 }
 
-impl Device for Ssi {
+impl<const SPECIAL: bool> Ssi<SPECIAL> {
+    /// What the port is made for.
+    fn asked() -> SsiSpec {
+        let after: &[Special] = match SPECIAL {
+            true => &[Special::PowerFail, Special::ParityEven],
+            false => &[],
+        };
+        SsiSpec {
+            after: Specials::new(after).unwrap_or_default(),
+            ..SsiSpec::default()
+        }
+    }
+}
+
+impl<const SPECIAL: bool> Device for Ssi<SPECIAL> {
     const PINS: &'static [&'static str] = &["ssi_clk"];
     const DRIVER: Option<usize> = None;
     const WAYS: &'static [&'static str] = &[
@@ -61,10 +79,12 @@ impl Device for Ssi {
     ];
 
     fn plans() -> Vec<Plan> {
+        let subject = if SPECIAL { SUBJECT_SPECIAL } else { SUBJECT };
+        let bits = Self::asked().copy_bits(POSITION_BITS);
         let plan = |kind, settings: &'static [(&'static str, u64)], copies: u64| {
-            let frame_us = copies * u64::from(POSITION_BITS + 1);
+            let frame_us = copies * (bits + 1);
             Plan {
-                subject: SUBJECT,
+                subject,
                 kind,
                 system_mhz: SYSTEM_MHZ,
                 settings,
@@ -76,17 +96,26 @@ impl Device for Ssi {
                 changes: &CHANGES,
             }
         };
-        vec![plan("position", &SINGLE, 1), plan(TWICE, &DOUBLE, 2)]
+        let mut plans = vec![plan("position", &SINGLE, 1)];
+        if !SPECIAL {
+            plans.push(plan(TWICE, &DOUBLE, 2));
+        }
+        plans
     }
 
     fn design() -> Result<Design, CampaignError> {
-        let mut block = SsiPort::default();
+        let mut block = SsiPort::new(&Self::asked());
         block.connect_all();
         Ok(elaborate(&block, SUBJECT)?)
     }
 
     fn new(plan: &Plan) -> Self {
+        let after = match SPECIAL {
+            true => vec![Extra::Level(false), Extra::Parity(false)],
+            false => vec![],
+        };
         let sound = EncoderConfig {
+            after,
             position_bits: POSITION_BITS,
             repeats: plan.kind == TWICE,
             tm: TM,
