@@ -32,6 +32,7 @@ mod bus {
     mod configuration;
 }
 mod ssi {
+    mod page;
     mod virtual_card;
 }
 mod stream {

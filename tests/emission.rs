@@ -17,8 +17,13 @@ mod tools;
 mod verilog;
 mod vhdl;
 
+#[allow(dead_code)] // the tests of hosts/ take the rest
+#[path = "hosts/desk.rs"]
+mod desk;
+
 mod ssi {
     mod bench;
+    mod channel;
     mod config;
 }
 mod t_format {

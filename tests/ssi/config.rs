@@ -20,6 +20,10 @@ fn complaint(text: &str) -> String {
 fn mistakes_are_told_with_line_and_remedy() {
     let ignored = ["\"ignored\""; 15].join(", ");
     let too_many = format!("bits_after = [{ignored}] ");
+    let with_crc = format!(
+        "bits_after = [{}, \"crc6\"] ",
+        ["\"ignored\""; 9].join(", ")
+    );
     let far = format!(
         "bits_before = [\"shown\", {}, \"alarm\"] ",
         ["\"ignored\""; 7].join(", ")
@@ -44,6 +48,11 @@ fn mistakes_are_told_with_line_and_remedy() {
             "bits_after = [] ",
             &too_many,
             "channel[0].bits_after = 15 words: a frame has at most 14 bits that are not position; leave the last ones out",
+        ),
+        (
+            "bits_after = [] ",
+            &with_crc,
+            "15 bits of a frame are not position, bits_before and bits_after together; at most 14 (without the last ones an encoder needs end_low = false); leave the last ones out",
         ),
         (
             "bits_before = [] ",
@@ -128,6 +137,25 @@ fn mistakes_are_told_with_line_and_remedy() {
     assert!(complaint(&missing).contains("channel[0].clock_hz: is missing"));
 }
 
+/// Catches a figure in a remedy that is one too few or too many.
+#[test]
+fn figures_in_remedies_of_a_slow_ssi_clock_are_the_first_that_fit() {
+    let with = |hz: u64, ns: u64| {
+        let text = changed("clock_hz = 1_000_000 ", &format!("clock_hz = {hz} "));
+        let text = text.replacen("sample_hz = 5_000 ", "sample_hz = 2_000 ", 1);
+        text.replacen("twice = false ", &format!("recovery_min_ns = {ns} "), 1)
+    };
+    for (hz, ns, fits) in [
+        (125_000, 12_000, true),
+        (125_000, 11_999, false),
+        (150_151, 10_000, true),
+        (149_500, 10_000, false),
+    ] {
+        let read = parse("ssi.toml", &with(hz, ns));
+        assert_eq!(read.is_ok(), fits, "{hz} {ns}: {read:?}");
+    }
+}
+
 /// An SSI channel at 100 MHz, on a card without a UART.
 fn single(keys: &str) -> String {
     format!(
@@ -139,13 +167,20 @@ fn single(keys: &str) -> String {
 /// Catches a delay of the encoder that is fixed, and a limit of the clock that is EnDat's.
 #[test]
 fn channel_takes_the_encoders_own_delay_and_clocks_from_80_khz_to_4_mhz() {
-    for (keys, most_ns) in [
+    for (keys, sheet_ns, most_ns) in [
         (
             "position_bits = 19\nclock_hz = 2_500_000\ncable_m = 2\n",
+            300,
             320,
         ),
         (
+            "position_bits = 12\nclock_hz = 4_000_000\ncable_m = 2\n",
+            150,
+            170,
+        ),
+        (
             "position_bits = 12\nclock_hz = 4_000_000\ncable_m = 0\n",
+            150,
             190,
         ),
     ] {
@@ -157,6 +192,12 @@ fn channel_takes_the_encoders_own_delay_and_clocks_from_80_khz_to_4_mhz() {
         let card = parse("single.toml", &with(most_ns)).unwrap();
         let told = endat_gen::explain::report(&card).to_string();
         let line = format!("; {most_ns} ns in the encoder and ");
+        assert!(told.contains(&line), "{told}");
+        let slow = parse("single.toml", &with(sheet_ns)).unwrap();
+        let told = endat_gen::explain::report(&slow).to_string();
+        // A period, but six cycles of 10 ns at the input.
+        let left_ns = 1_000_000_000 / slow.card.channels[0].spec.clock_hz - 60;
+        let line = format!("  bits             taken up to {left_ns} ns after their clock edge; {sheet_ns} ns in the encoder and ");
         assert!(told.contains(&line), "{told}");
         let refused = complaint(&with(most_ns + 1));
         let remedy = format!("lower bit_delay_ns to {most_ns}, if that is the encoder's");

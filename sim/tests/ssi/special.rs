@@ -242,36 +242,66 @@ fn port_takes_63_bits_twice_and_an_alarm_from_either_copy() {
     assert_eq!(run.encoder.violations(), []);
 }
 
-/// A host must not take "a trigger was lost", with which a position is good, for the cause of a frame with an alarm.
+/// A host must not take "a trigger was lost" or "the frame before ended late", with which a position is good, for the cause of a frame that
+/// has none.
 #[test]
-fn an_alarm_comes_before_a_lost_trigger() {
-    let encoder = EncoderConfig {
-        position_bits: 12,
-        position: 0xA6C,
-        after: vec![HIGH],
-        ..EncoderConfig::default()
-    };
-    let mut run = start(&asked(&[], &[Alarm]), encoder);
-    run.trigger();
-    run.cycles(30);
-    run.trigger();
-    assert!(run.ends());
-    let lost = cause::flag(cause::TRIGGER_OVERRUN);
-    assert_eq!(run.get("cause"), u128::from(cause::ALARM));
-    assert_eq!(
-        run.get("flags") & 0xFFF,
-        u128::from(lost | cause::flag(cause::ALARM))
-    );
-    assert_eq!(run.fresh(), None);
-    // No bit has come, so no special bit is looked at.
-    let valid = EncoderConfig {
-        defect: Defect::StuckLow,
-        ..run.encoder.config.clone()
-    };
+fn causes_of_special_bits_come_before_a_lost_trigger_and_a_late_end() {
+    for (special, bit, raised) in [
+        (Alarm, 12, cause::ALARM),
+        (PowerFail, 12, cause::POWER_FAIL),
+        (NotValid, 12, cause::NOT_VALID),
+        (Crc6, 3, cause::CRC),
+    ] {
+        let encoder = EncoderConfig {
+            position_bits: 12,
+            position: 0xA6C,
+            after: vec![if special == Crc6 { Crc } else { LOW }],
+            ..EncoderConfig::default()
+        };
+        let mut run = start(&asked(&[], &[special]), encoder);
+        // The frame before is withdrawn.
+        run.encoder.config.tm = 30 * US;
+        assert_eq!(frame(&mut run).0, cause::RECOVERY_TOO_LONG);
+        run.cycles(15 * SYSTEM_MHZ);
+        run.encoder.config.tm = 18 * US;
+        run.encoder.config.defect = Defect::Flip { copy: 0, bit };
+        run.trigger();
+        run.cycles(30);
+        run.trigger();
+        assert!(run.ends());
+        let all = [raised, cause::TRIGGER_OVERRUN, cause::RECOVERY_TOO_LONG];
+        let flags: u64 = all.map(cause::flag).iter().sum();
+        assert_eq!(run.get("cause"), u128::from(raised), "{special:?}");
+        assert_eq!(run.get("flags") & 0xFFF, u128::from(flags), "{special:?}");
+        assert_eq!(run.fresh(), None);
+    }
+}
+
+/// No bit has come, so no special bit is looked at.
+#[test]
+fn special_bits_of_a_frame_without_bits_are_no_cause() {
     let mut run = start(&asked(&[], &[Valid]), EncoderConfig::default());
-    run.encoder.config = valid;
+    run.encoder.config.defect = Defect::StuckLow;
     let not_high = cause::DATA_NOT_HIGH;
     assert_eq!(frame(&mut run), (not_high, cause::flag(not_high), 0, None));
+}
+
+/// A frame of a port that is set to 12 bits, at an encoder that keeps its last bit and has this width.
+fn run_held(
+    asked: &SsiSpec,
+    defect: Defect,
+    encoder_bits: u32,
+    check: impl Fn((u64, u64, u64, Option<u64>)),
+) {
+    let encoder = EncoderConfig {
+        position_bits: encoder_bits,
+        position: (1 << encoder_bits) - 1,
+        ..EncoderConfig::default()
+    };
+    let mut run = start(asked, encoder);
+    run.set("position_bits", 12);
+    run.encoder.config.defect = defect;
+    check(frame(&mut run));
 }
 
 /// The encoder is HIGH after an odd position: the next frame must wait all the same, or it would get that position again.
@@ -307,6 +337,17 @@ fn port_waits_out_the_recovery_time_of_an_encoder_that_keeps_its_last_bit() {
         run.cycles(10);
         assert_eq!(run.get("position_valid"), 0);
         assert_eq!(run.get("cause"), u128::from(cause::RECOVERY_TOO_LONG));
+    }
+    // DATA must be HIGH before the frame.
+    run_held(&asked, Defect::StuckLow, 12, |told| {
+        assert_eq!((told.0, told.3), (cause::DATA_NOT_HIGH, None));
+    });
+    // No wrong width is seen, whatever is in the cell after the last bit.
+    for bits in [10, 11, 13, 20] {
+        run_held(&asked, Defect::None, bits, |told| {
+            assert_eq!(told.0, 0, "{bits}");
+            assert!(told.3.is_some());
+        });
     }
     // Only a special bit tells an open plug from a position of ones. With a LOW end it has a cause.
     let open = EncoderConfig {

@@ -3,7 +3,7 @@
 use super::run::{Run, Settings, SYSTEM_MHZ};
 use endat_hdl::protocols::ssi::cause;
 use endat_sim::rng::Rng;
-use endat_sim::ssi::EncoderConfig;
+use endat_sim::ssi::{Defect, EncoderConfig};
 use endat_sim::US;
 
 const PERIOD: u64 = 20;
@@ -60,7 +60,14 @@ fn taken(encoder_bits: u32, repeats: bool, frames: u32) -> u32 {
         };
         let what = format!("{encoder_bits} bits, repeats {repeats}, {position:#x}");
         assert_eq!(run.get("cause"), u128::from(told), "{what}");
-        assert_eq!(run.fresh().is_none(), is_seen, "{what}");
+        // What a shaft that is turned would show: fewer bits have zeros after them, and of more bits the upper ones are taken.
+        let shown = match WIDTH.checked_sub(encoder_bits) {
+            None => position >> (encoder_bits - WIDTH),
+            Some(fewer) if !repeats => position << fewer,
+            // After the LOW cell the second copy begins.
+            Some(fewer) => position << fewer | position >> (encoder_bits + 1 - fewer),
+        };
+        assert_eq!(run.fresh(), (!is_seen).then_some(shown), "{what}");
         taken += u32::from(!is_seen);
     }
     taken
@@ -105,6 +112,59 @@ fn wrong_width_is_seen_in_every_frame_with_two_copies() {
                 assert_eq!(run.fresh(), None, "{what}");
             }
         }
+    }
+}
+
+/// The positions of which `twice` says nothing: where the encoder stays LOW, 0 alone; where bits come in both copies, those that repeat as
+/// the copies do.
+#[test]
+fn wrong_width_is_not_seen_where_the_shifted_copies_are_the_same() {
+    // Cells as they are clocked: the first 25 of them are compared with those from the 27th on.
+    let alike = |encoder_bits: u32, repeats: bool, position: u64| {
+        let bits = (0..encoder_bits).map(|place| bit(position, encoder_bits, place));
+        let copy: Vec<bool> = bits.chain([false]).collect();
+        let cell = |n: usize| match n {
+            n if n < copy.len() => copy[n],
+            _ => repeats && copy[n % copy.len()],
+        };
+        let width = WIDTH as usize;
+        let is_low = !cell(width) && !cell(2 * width + 1);
+        is_low && (0..width).all(|n| cell(n) == cell(n + width + 1))
+    };
+    for (encoder_bits, repeats, positions, same) in [
+        (24, false, &[0u64, 1, 0x80_0000, 0x55_5555][..], 1),
+        (24, true, &[0, 1, 0x80_0000, 0xFF_FFFF], 1),
+        (21, true, &[0, 1, 0x15_5555, 0x0A_AAAA], 2),
+        (27, true, &[0, 1, 0x555_5555, 0x2AA_AAAA], 2),
+        (48, false, &[0, 1, 1 << 47, 1 << 47 | 1 << 21], 2),
+    ] {
+        let mut run = start(encoder_bits, repeats, true);
+        let mut not_seen = 0;
+        for &position in positions {
+            run.encoder.config.position = position;
+            run.trigger();
+            assert!(run.ends());
+            let is_alike = alike(encoder_bits, repeats, position);
+            let what = format!("{encoder_bits} bits, repeats {repeats}, {position:#x}");
+            assert_eq!(run.fresh().is_some(), is_alike, "{what}");
+            not_seen += u32::from(is_alike);
+            run.cycles(20 * SYSTEM_MHZ);
+        }
+        assert_eq!(not_seen, same, "{encoder_bits} {repeats}");
+    }
+}
+
+/// Nothing checks a single copy without a parity bit or a CRC.
+#[test]
+fn disturbed_bit_of_a_single_copy_is_a_wrong_position() {
+    let mut run = start(WIDTH, false, false);
+    for bit in [0, 7, 24] {
+        run.encoder.config.position = 0x123_4567;
+        run.encoder.config.defect = Defect::Flip { copy: 0, bit };
+        run.trigger();
+        assert!(run.ends());
+        assert_eq!(run.get("cause"), 0);
+        assert_eq!(run.fresh(), Some(0x123_4567 ^ 1 << (24 - bit)));
     }
 }
 
