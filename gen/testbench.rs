@@ -333,19 +333,27 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         double_edge => card.line.double_edge,
         bus => project.bus.name(),
     };
-    let part = |name: &str, text: &str| template::render(name, text, &context);
-    let context = context! {
-        results => part("bench_results", include_str!("templates/bench_results.v.jinja"))?,
-        limits => part("bench_limits", include_str!("templates/bench_limits.v.jinja"))?,
-        limits_tasks => part("bench_limits_tasks", include_str!("templates/bench_limits_tasks.v.jinja"))?,
-        ..context
-    };
+    let context = with_parts(&context)?;
     let text = template::render(
         "testbench",
         include_str!("templates/testbench.v.jinja"),
         &context,
     )?;
     Ok(Some(Artifact::new(format!("{}_tb.v", project.name), text)))
+}
+
+/// What a bench is made of, with the parts of its text that are in files of their own.
+fn with_parts(context: &Value) -> Result<Value, GenError> {
+    let part = |name: &str, text: &str| template::render(name, text, context);
+    let results = include_str!("templates/bench_results.v.jinja");
+    let limits = include_str!("templates/bench_limits.v.jinja");
+    let limits_tasks = include_str!("templates/bench_limits_tasks.v.jinja");
+    Ok(context! {
+        results => part("bench_results", results)?,
+        limits => part("bench_limits", limits)?,
+        limits_tasks => part("bench_limits_tasks", limits_tasks)?,
+        ..context.clone()
+    })
 }
 
 /// The event of a new result of each channel, the first of its four.

@@ -1261,18 +1261,18 @@ module s6_two_channel_tb;
     endtask
 
     // So many cycles before its end it is set; then the trigger comes to its time.
-    task ends_at(input [23:0] cycles, input [23:0] before);
+    task ends_at(input [23:0] cycles, input [23:0] left);
         begin
             fallen = {CHANNELS{1'b0}};
             new_positions;
-            set_timer(cycles - before);
+            set_timer(cycles - left);
             trigger_time = $realtime;
             cycles_to_fall = 0;
             trigger_count = trigger_count + 1;
             // The next period does not end within this.
             wait_results(CYCLE_NS);
             check("channels that the timer started", fallen, ENDAT);
-            check("cycles to the timer's trigger", cycles_to_fall, before + TIMER_CYCLES);
+            check("cycles to the timer's trigger", cycles_to_fall, left + TIMER_CYCLES);
             fall_time_before = fall_time;
             fall_time = first_fall[FIRST];
             check_results;
