@@ -136,6 +136,14 @@ fn unchecked(card: &CardConfig) -> Vec<&'static str> {
     missing.map(|(_, name)| name).collect()
 }
 
+/// Cycles by which a measured line delay may be above the one that is there: the mean of many edges, and half cycles, are rounded otherwise.
+fn delay_spare(card: &CardConfig) -> u64 {
+    match card.line.alignment || card.line.double_edge {
+        true => 12,
+        false => 2,
+    }
+}
+
 /// The ports of the bus, and the signal at each: those that Verilog ties to a literal have a signal of their name.
 fn connections(host: &BenchHost) -> Vec<Value> {
     let row = |(port, net): &(&'static str, &'static str)| {
@@ -192,6 +200,7 @@ pub fn artifact(
         trigger_cycles_max => TRIGGER_CYCLES,
         abort_us => ABORT_US,
         measuring_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
+        delay_spare => delay_spare(card),
         launch_ns => LAUNCH_NS,
         input_cycles => INPUT_CYCLES,
         rates => rates(card),
