@@ -105,11 +105,10 @@ fn bench_with_encoders_passes_on_every_bus() {
         assert_passes(&format!("encoders-{bus}"), &emission(&card), &[]);
         None
     });
-    assert_passes(
-        "encoders-reset",
-        &small("apb", "[device]\ninitial_values = false\n"),
-        &[],
-    );
+    // Before the reset numeric_std may say that values are none.
+    let files = small("apb", "[device]\ninitial_values = false\n");
+    let (is_good, text) = bench(&write("encoders-reset", &files), &files, &[]);
+    assert!(is_good && text.lines().any(|line| line == "PASS"), "{text}");
 }
 
 #[test]
