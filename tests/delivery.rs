@@ -1,4 +1,4 @@
-//! Configurations and what is made of them, the pages, the packages, the decoders for sigrok, turns that are counted on, and the rules of the house.
+//! Files and boards that are made of configurations, the pages, the packages, the decoders for sigrok, turns that are counted on, and the rules of the house.
 
 mod boards;
 mod bus_card;
@@ -10,12 +10,10 @@ mod emitted;
 mod files;
 mod house;
 mod maps;
-mod new;
 mod packages;
 mod pages;
 #[allow(dead_code)] // other topics take the rest
 mod program;
-mod remedies;
 mod shmoo;
 mod sigrok;
 #[allow(dead_code, unused_imports)]
@@ -29,7 +27,6 @@ mod desk;
 mod bus {
     mod board;
     mod cocotb;
-    mod configuration;
 }
 mod ssi {
     mod page;

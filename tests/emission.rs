@@ -2,12 +2,10 @@
 
 #[allow(dead_code)] // other topics take the rest
 mod bus_card;
-mod config;
 mod elaborate;
 #[allow(dead_code)] // other topics take the rest
 mod emitted;
 mod engines;
-mod keys;
 #[allow(dead_code)] // other topics take the rest
 mod program;
 mod prove;
@@ -24,12 +22,10 @@ mod desk;
 mod ssi {
     mod bench;
     mod channel;
-    mod config;
 }
 mod t_format {
     mod area;
     mod bench;
-    mod config;
 }
 
 // The tests of design/ are made of these, too.

@@ -1,12 +1,10 @@
 //! The table of keys: what the reader asks for, the pages, the schemas and `explain` are one, and JSON Schema's own validator says so.
 
-#[path = "bases.rs"]
-mod bases;
 mod validator;
 
+use crate::bases::BASES;
 use crate::program::{bad, good, run, Dir};
 use crate::tools;
-use bases::BASES;
 use endat_gen::board::{self, BOARD_KEYS};
 use endat_gen::campaign::configurations::valid;
 use endat_gen::config::keys::{self, Key, Kind, Usual, CHANNELS, KEYS};

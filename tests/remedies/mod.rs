@@ -5,10 +5,7 @@ mod follow;
 mod mistakes;
 mod usage;
 
-#[path = "../keys/bases.rs"]
-mod bases;
-
-use bases::BASES;
+use crate::bases::BASES;
 use document::Document;
 use endat_gen::config::parse_any;
 use endat_gen::config::{preset, PRESETS, RECEIVER_PRESETS};
