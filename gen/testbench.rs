@@ -240,10 +240,9 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         true => 0,
         false => longest_ns(card, additional_data),
     };
-    let measuring = if card.line.alignment {
-        CALIBRATION_FRAMES
-    } else {
-        1
+    let measuring = match card.line.alignment {
+        true => CALIBRATION_FRAMES,
+        false => 1,
     };
     let calibration_ns =
         (calibration_ns + additional_data_ns).max(cycle_ns) * measuring as u64 + cycle_ns;
@@ -254,8 +253,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let exchanges = others.iter().map(|parts| parts.shortest_cycles);
     let shortest_frame = frames.map(|f| f.frame_cycles).chain(exchanges).min();
     let abort_us = card.endat_channels().map(|(_, c)| c.abort_us).max();
-    let ports = card.endat_channels();
-    let ports: Vec<Port> = ports.map(|(i, c)| Port::new(card, i, c)).collect();
+    let ports = ports(card);
     let encoder = template::render(
         "encoder",
         include_str!("templates/encoder.v.jinja"),
@@ -340,6 +338,12 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         &context,
     )?;
     Ok(Some(Artifact::new(format!("{}_tb.v", project.name), text)))
+}
+
+/// The EnDat channels and their encoders.
+fn ports(card: &CardConfig) -> Vec<Port> {
+    let channels = card.endat_channels();
+    channels.map(|(i, c)| Port::new(card, i, c)).collect()
 }
 
 /// What a bench is made of, with the parts of its text that are in files of their own.

@@ -13,7 +13,7 @@ use endat_hdl::card::stream::buffer::BUFFER_BYTES;
 use endat_hdl::config::{ERROR_TEST_MS, LIST};
 use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use endat_regs::{Protocol, MAP_BYTES};
-pub use ssi::BIT_DELAY;
+pub use ssi::{BITS_AFTER, BITS_BEFORE, BIT_DELAY, CODE, END_LOW, PARITY, TWICE};
 use std::ops::RangeInclusive;
 
 /// The table that says for all channels what they do not say themselves.

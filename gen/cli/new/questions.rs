@@ -6,7 +6,6 @@ use crate::config::words::RECEIVER_BUS;
 use crate::form::key::Kind;
 use crate::json_schema::plain;
 use crate::number::number;
-use crate::protocols::ssi::keys as ssi;
 use crate::protocols::t_format::keys::BIT_RATE;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::timing::{cycles_to_ns, period_cycles};
@@ -283,38 +282,38 @@ pub static QUESTIONS: &[Question] = &[
     },
     Question {
         name: "code",
-        of: Of::Key(&ssi::CODE, keys::CHANNELS),
-        is_asked: |answers| is_of_form(&ssi::CODE, answers),
-        usual: |_| ssi::CODE.words(),
+        of: Of::Key(&keys::CODE, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&keys::CODE, answers),
+        usual: |_| keys::CODE.words(),
     },
     Question {
         name: "parity",
-        of: Of::Key(&ssi::PARITY, keys::CHANNELS),
-        is_asked: |answers| is_of_form(&ssi::PARITY, answers),
-        usual: |_| ssi::PARITY.words(),
+        of: Of::Key(&keys::PARITY, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&keys::PARITY, answers),
+        usual: |_| keys::PARITY.words(),
     },
     Question {
         name: "bits-before",
-        of: Of::Key(&ssi::BITS_BEFORE, keys::CHANNELS),
-        is_asked: |answers| is_of_form(&ssi::BITS_BEFORE, answers),
+        of: Of::Key(&keys::BITS_BEFORE, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&keys::BITS_BEFORE, answers),
         usual: |_| vec![NOTHING.into()],
     },
     Question {
         name: "bits-after",
-        of: Of::Key(&ssi::BITS_AFTER, keys::CHANNELS),
-        is_asked: |answers| is_of_form(&ssi::BITS_AFTER, answers),
+        of: Of::Key(&keys::BITS_AFTER, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&keys::BITS_AFTER, answers),
         usual: |_| vec![NOTHING.into()],
     },
     Question {
         name: "twice",
-        of: Of::Key(&ssi::TWICE, keys::CHANNELS),
-        is_asked: |answers| is_of_form(&ssi::TWICE, answers),
+        of: Of::Key(&keys::TWICE, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&keys::TWICE, answers),
         usual: |_| vec!["false".into()],
     },
     Question {
         name: "end-low",
-        of: Of::Key(&ssi::END_LOW, keys::CHANNELS),
-        is_asked: |answers| is_of_form(&ssi::END_LOW, answers),
+        of: Of::Key(&keys::END_LOW, keys::CHANNELS),
+        is_asked: |answers| is_of_form(&keys::END_LOW, answers),
         usual: |_| vec!["true".into()],
     },
     Question {
