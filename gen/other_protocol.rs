@@ -86,6 +86,8 @@ pub struct VhdlParts {
     pub longest_cycles: u64,
     /// The shortest exchange.
     pub shortest_cycles: u64,
+    /// What the channels have and the bench does not check.
+    pub unchecked: Option<&'static str>,
     /// Text for each place of the bench that is in [`VHDL_PLACES`].
     #[serde(flatten)]
     pub texts: BTreeMap<&'static str, String>,

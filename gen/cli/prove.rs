@@ -27,7 +27,7 @@ pub struct ProveArgs {
     /// Folder for counterexamples (VCD and SVG)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
+    /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles, no longer than cable_m allows
     #[arg(long, value_name = "DELAY_CYCLES", value_parser = crate::number::parser(0, 1023), allow_negative_numbers = true)]
     frames: Option<u32>,
     /// Phases of the microsecond in which these frames begin, evenly spread [default: 16, or all where there are fewer]

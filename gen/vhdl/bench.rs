@@ -188,7 +188,7 @@ pub fn artifact(
         clear_cycles => CLEAR_CYCLES,
         services => services(card),
         program,
-        unchecked => unchecked(card),
+        unchecked => unchecked(card).into_iter().chain(others.iter().filter_map(|p| p.unchecked)).collect::<Vec<_>>(),
         first => ports.first().map_or(0, |port| port.index),
         last => ports.last().map_or(0, |port| port.index),
         channels => Serde(&ports),

@@ -80,9 +80,8 @@ fn a_plug_that_is_pulled_and_put_in_again_is_seen_and_gone() {
     host.wait(0, is_good);
     let told = host.inject("unplug 0");
     assert!(told.starts_with("unplug 0 at "), "{told}");
-    let seen = host.wait(0, |cell| !cell.fresh && cell.cause != "not_taken");
-    // Nobody drives DATA, and the receiver's bias is HIGH.
-    assert_eq!(seen.cells[0].cause, "data_not_low", "{seen:?}");
+    // The frame that loses its encoder ends with whatever it has met. In those after it nobody drives DATA, and the receiver's bias is HIGH.
+    let seen = host.wait(0, |cell| cell.cause == "data_not_low");
     assert!(is_good(&seen.cells[1]), "{seen:?}");
     host.inject("plug 0");
     host.wait(0, is_good);

@@ -232,6 +232,8 @@ pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, Gen
     let ports = speakers(card).map(|(n, c, asked)| Port::new(card, n, c, asked));
     let ports: Vec<Port> = ports.collect();
     let channels: Vec<usize> = ports.iter().map(|p| p.index).collect();
+    let mut specials = speakers(card).flat_map(|(_, _, asked)| asked.specials());
+    let has_alarms = specials.any(|special| special.cause().is_some());
     let facts = context! {
         name,
         channels => Serde(ports),
@@ -257,6 +259,7 @@ pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, Gen
         word: Protocol::Ssi.row().word,
         longest_cycles: longest.max().unwrap_or(0),
         shortest_cycles: shortest_cycles(card),
+        unchecked: has_alarms.then_some("alarms of SSI special bits"),
         texts: VHDL_PLACES
             .into_iter()
             .map(text)

@@ -155,6 +155,7 @@ pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, Gen
         word: Protocol::TFormat.row().word,
         longest_cycles: longest.max().unwrap_or(0) + cycles_at_least(IDLE_NS, card.system_hz),
         shortest_cycles: exchanges.min().unwrap_or(0),
+        unchecked: Some("requests of the host on T-format channels"),
         texts: (VHDL_PLACES.into_iter())
             .map(text)
             .collect::<Result<_, GenError>>()?,

@@ -1,7 +1,7 @@
 {% if part == "signals" %}
     -- The bus: an AHB-Lite manager. It changes its signals at falling edges of the clock.
     signal hsel, hwrite : std_logic := '0';
-    signal s_ahb_htrans : std_logic_vector(1 downto 0) := "00";
+    signal htrans : std_logic_vector(1 downto 0) := "00";
     signal s_ahb_hsize : std_logic_vector(2 downto 0) := "010";
     signal haddr : std_logic_vector(12 downto 0) := (others => '0');
     signal hwdata, hrdata : word_t := (others => '0');
@@ -12,13 +12,13 @@
         begin
             wait until falling_edge(clk);
             hsel <= '1';
-            s_ahb_htrans <= "10";
+            htrans <= "10";
             hwrite <= bit_of(write);
             haddr <= bits_of(4 * address + offset, 13);
             wait until falling_edge(clk);
             -- The data phase; no other address is next to it.
             hsel <= '0';
-            s_ahb_htrans <= "00";
+            htrans <= "00";
             hwdata <= value;
             for n in 1 to ACCESS_CYCLES_MAX loop
                 wait until rising_edge(clk);

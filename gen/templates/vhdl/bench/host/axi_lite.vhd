@@ -3,7 +3,7 @@
     signal awvalid, wvalid, bready, arvalid, rready : std_logic := '0';
     signal awaddr, araddr : std_logic_vector(12 downto 0) := (others => '0');
     signal wdata, rdata : word_t := (others => '0');
-    signal s_axi_wstrb : std_logic_vector(3 downto 0) := "1111";
+    signal wstrb : std_logic_vector(3 downto 0) := "1111";
     signal awready, wready, bvalid, arready, rvalid : std_logic;
     signal bresp, rresp : std_logic_vector(1 downto 0);
 {% elif part == "procedures" %}
@@ -23,7 +23,7 @@
                 awaddr <= not bits_of(4 * address, 13);
             end if;
             wdata <= value;
-            s_axi_wstrb <= bytes;
+            wstrb <= bytes;
             awvalid <= bit_of(write);
             wvalid <= bit_of(write);
             arvalid <= bit_of(not write);

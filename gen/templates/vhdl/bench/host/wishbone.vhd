@@ -1,8 +1,8 @@
 {% if part == "signals" %}
     -- The bus: a Wishbone master. It changes its signals at falling edges of the clock.
-    signal wb_cyc, wb_we : std_logic := '0';
+    signal wb_cyc, wb_stb, wb_we : std_logic := '0';
     signal wb_adr : std_logic_vector(10 downto 0) := (others => '0');
-    signal wb_sel_i : std_logic_vector(3 downto 0) := "1111";
+    signal wb_sel : std_logic_vector(3 downto 0) := "1111";
     signal wb_dat_to_card, wb_dat_from_card : word_t := (others => '0');
     signal wb_ack, wb_err : std_logic;
 {% elif part == "procedures" %}
@@ -11,9 +11,10 @@
         begin
             wait until falling_edge(clk);
             wb_cyc <= '1';
+            wb_stb <= '1';
             wb_we <= bit_of(write);
             wb_adr <= bits_of(address, 11);
-            wb_sel_i <= bytes;
+            wb_sel <= bytes;
             wb_dat_to_card <= value;
             for n in 1 to ACCESS_CYCLES_MAX loop
                 wait until rising_edge(clk);
@@ -24,6 +25,7 @@
             answer := wb_dat_from_card;
             wait until falling_edge(clk);
             wb_cyc <= '0';
+            wb_stb <= '0';
         end procedure;
 {% elif part == "steps" %}
         tell("bus: writes of a part of a word");
