@@ -52,7 +52,7 @@ It is an induction over frames. *Ready* and *rest* are a level for each register
 the gates that yosys makes of the Verilog, as an exclusive or of products of unknown bits. CRC, parities and shift registers are exclusive ors, so width costs next to nothing; for a
 solver of Boolean formulas they are the hardest part. Each CRC bit that is sent becomes an unknown by itself, and an older bit the sum of it and others, so that the edges between
 CRC bits, which a tracked phase looks at, stay short. A channel that comes back to rest with another level has a register that may be anything from then on, until nothing changes
-any more. Where all phases of the microsecond are proved, that is every frame for ever; in the other rows every frame that begins in these phases.
+any more. Where all phases of the microsecond are proved, that is every frame for ever; in the other rows every frame that begins in these phases. The command begins with how many phases it looks at, 16 or `--phases`, evenly spread; the shipped card at 100 MHz takes four minutes for 16 of 100 on two processors.
 
 Settings, tcal (5 us), tm (11 us) and the delay are those of the row; the encoder is `gen/prove/frames/encoder.sv`, strict, and of its own making. That additional data have been
 selected is taken as given; their warning bit is LOW. DATA that nobody drives is anything in every cycle, or LOW (`--undriven low`): with an input filter, which counts what DATA does
