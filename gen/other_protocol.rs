@@ -2,12 +2,14 @@
 
 use crate::config::reader::Table;
 use crate::error::GenError;
+use crate::template;
 use crate::virtual_card::deed::Deed;
 use crate::virtual_card::sets::Motion;
 use crate::virtual_card::settings::VirtualConfig;
 use endat_hdl::config::{CardConfig, ChannelConfig, ChannelSpec};
 use endat_regs::Protocol;
 use endat_sim::bench::OtherEncoder;
+use minijinja::{context, Value};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -28,7 +30,7 @@ pub trait Other: Sync {
     /// What the emitted bench has for its channels; `sleeps`: the card does something else first.
     fn bench(&self, name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError>;
 
-    /// What the bench in VHDL has for its channels.
+    /// The parts of the VHDL bench for its channels.
     fn vhdl_bench(&self, name: &str, card: &CardConfig) -> Result<VhdlParts, GenError>;
 
     /// After an exchange without a reply the line of the bench's encoder is idle at the latest after this, in ns.
@@ -77,7 +79,7 @@ pub struct BenchParts {
     pub shortest_cycles: u64,
 }
 
-/// What the bench in VHDL has for the channels of a protocol.
+/// The parts of the VHDL bench for the channels of a protocol.
 #[derive(Serialize)]
 pub struct VhdlParts {
     /// Name of the protocol as an identifier.
@@ -86,15 +88,29 @@ pub struct VhdlParts {
     pub longest_cycles: u64,
     /// The shortest exchange.
     pub shortest_cycles: u64,
-    /// What the channels have and the bench does not check.
+    /// A part of the channels that the bench does not check.
     pub unchecked: Option<&'static str>,
     /// Text for each place of the bench that is in [`VHDL_PLACES`].
     #[serde(flatten)]
     pub texts: BTreeMap<&'static str, String>,
 }
 
-/// Places of the bench in VHDL at which a protocol has text: its encoder, signals, what the encoder sends next, what is checked.
-pub const VHDL_PLACES: [&str; 13] = [
+impl VhdlParts {
+    /// Renders the template of a protocol for each place.
+    pub fn texts(
+        template: &str,
+        facts: &Value,
+    ) -> Result<BTreeMap<&'static str, String>, GenError> {
+        let text = |place: &'static str| {
+            let context = context! { part => place, ..facts.clone() };
+            Ok((place, template::render("vhdl_parts", template, &context)?))
+        };
+        VHDL_PLACES.into_iter().map(text).collect()
+    }
+}
+
+/// Places of the bench in VHDL at which a protocol has text: its encoder, signals, what the encoder sends next, checks.
+const VHDL_PLACES: [&str; 13] = [
     "encoder",
     "signals",
     "cables",

@@ -35,9 +35,9 @@ const ENCODER_GIVES_UP_NS: u64 = 15_000;
 pub(crate) const LAUNCH_NS: u64 = 12;
 /// Clock edges from the trigger at its pin to the first falling edge of an EnDat clock: synchroniser, edge detection, strobe, transaction, clock generator, pin.
 pub(crate) const TRIGGER_CYCLES: u64 = 6;
-/// From the cycle in which the timer has its period to the first falling clock edge, in system clock cycles.
+/// System clock cycles between the end of the timer's period and the first falling clock edge.
 const TIMER_CYCLES: u64 = 5;
-/// From the end of a frame at the encoder until the card has told everything and is ready, in ns, besides its way on the cable.
+/// The card is ready, and has reported everything, this long after the end of a frame at the encoder, in ns; the cable comes on top.
 const RESULT_NS: u64 = 4_000;
 /// Cycles that synchroniser and edge detection add to the measured line delay (the filter's come on top).
 pub(crate) const INPUT_CYCLES: u64 = 3;
@@ -240,10 +240,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         true => 0,
         false => longest_ns(card, additional_data),
     };
-    let measuring = match card.line.alignment {
-        true => CALIBRATION_FRAMES,
-        false => 1,
-    };
+    let measuring = measuring_frames(card);
     let calibration_ns =
         (calibration_ns + additional_data_ns).max(cycle_ns) * measuring as u64 + cycle_ns;
     let timeout = |c: &ChannelConfig| {
@@ -340,13 +337,21 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     Ok(Some(Artifact::new(format!("{}_tb.v", project.name), text)))
 }
 
+/// Frames that measure the line delay of a channel.
+pub(crate) fn measuring_frames(card: &CardConfig) -> usize {
+    match card.line.alignment {
+        true => CALIBRATION_FRAMES,
+        false => 1,
+    }
+}
+
 /// The EnDat channels and their encoders.
-fn ports(card: &CardConfig) -> Vec<Port> {
+pub(crate) fn ports(card: &CardConfig) -> Vec<Port> {
     let channels = card.endat_channels();
     channels.map(|(i, c)| Port::new(card, i, c)).collect()
 }
 
-/// What a bench is made of, with the parts of its text that are in files of their own.
+/// Adds the parts of the bench that are in files of their own.
 fn with_parts(context: &Value) -> Result<Value, GenError> {
     let part = |name: &str, text: &str| template::render(name, text, context);
     let results = include_str!("templates/bench_results.v.jinja");

@@ -33,7 +33,7 @@ pub struct Property {
     pub unless: Vec<Exception>,
 }
 
-/// What a property is not claimed of.
+/// A part of a block that a property excepts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exception {
     /// The constant of the block that says so.
@@ -43,7 +43,7 @@ pub struct Exception {
 }
 
 impl Property {
-    /// What it says, and what it is not claimed of.
+    /// Its words, with its exceptions.
     pub fn whole_words(&self) -> String {
         let parts: Vec<&str> = self.unless.iter().map(|e| e.words.as_str()).collect();
         match parts[..] {
@@ -52,7 +52,7 @@ impl Property {
         }
     }
 
-    /// What keeps it from being claimed of this block, in words; none: nothing.
+    /// Names the part of this block that the property excepts; none if it holds for the block.
     pub fn not_claimed(&self, block: &Module) -> Option<&str> {
         let is_there = |one: &&Exception| {
             let mut constants = block.parameters.iter();

@@ -98,7 +98,7 @@ fn writes(card: &CardConfig) -> Vec<Value> {
     words.collect()
 }
 
-/// From a trigger to the end of everything where positions are as wide as they can be, in ns.
+/// Longest cycle with positions of [`WIDEST_BITS`], in ns.
 pub(super) fn widest_ns(card: &CardConfig) -> u64 {
     let widest = changed(card, |request| ChannelSpec {
         position_bits: WIDEST_BITS,

@@ -16,13 +16,12 @@ use crate::testbench::host::{
 use crate::testbench::purpose::{at_rates, configured_list, first_measured, setting, tests};
 use crate::testbench::text::{fields, real, word_address, words, MARGIN_NS};
 use crate::testbench::{
-    causes, every_trigger, identification, result_events, Port, INPUT_CYCLES, LAUNCH_NS,
-    RESET_CYCLES, TRIGGER_CYCLES,
+    causes, every_trigger, identification, measuring_frames, ports, result_events, INPUT_CYCLES,
+    LAUNCH_NS, RESET_CYCLES, TRIGGER_CYCLES,
 };
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::services;
 use endat_hdl::config::CardConfig;
-use endat_hdl::endat::channel::CALIBRATION_FRAMES;
 use endat_hdl::endat::service::program::CLEAR_CYCLES;
 use endat_hdl::endat::timing::ABORT_US;
 use endat_hdl::endat::transaction::cause;
@@ -31,8 +30,9 @@ use endat_hdl::regs::{
 };
 use minijinja::context;
 use minijinja::value::{Serde, Value};
+use std::collections::BTreeSet;
 
-/// Causes that the bench waits for.
+/// Causes that the bench expects.
 const CAUSES: [&str; 7] = [
     "no_start_bit",
     "start_window",
@@ -46,7 +46,7 @@ const CAUSES: [&str; 7] = [
 /// Types, and the encoder on EnDat channels.
 const HEAD: &str = include_str!("../templates/vhdl/bench/head.vhd.jinja");
 const ENCODER: &str = include_str!("../templates/vhdl/bench/encoder.vhd.jinja");
-/// What comes after the encoders.
+/// The bench behind the encoders.
 const PARTS: [&str; 3] = [
     include_str!("../templates/vhdl/bench/bench.vhd.jinja"),
     include_str!("../templates/vhdl/bench/main.vhd.jinja"),
@@ -83,11 +83,14 @@ fn rates(card: &CardConfig) -> Vec<Value> {
     std::iter::once(own).chain(usual).collect()
 }
 
-/// What the host writes before the first trigger, besides the settings.
+/// A word that is 0.
+const ZERO: &str = "00000000";
+
+/// Words that the host writes before the first trigger, besides the settings.
 fn writes(card: &CardConfig) -> Vec<Value> {
     let why = |value: Value, address: &str, word: &str, why: &str| {
         let text = |name: &str| value.get_attr(name).ok().map(|v| v.to_string());
-        let word = text(word).unwrap_or_else(|| format!("{:08X}", 0));
+        let word = text(word).unwrap_or_else(|| ZERO.into());
         context! { address => text(address), value => word, why }
     };
     let measured = first_measured(card);
@@ -106,8 +109,7 @@ fn writes(card: &CardConfig) -> Vec<Value> {
         .filter(|_| !configured_list(card).is_empty());
     let listed = listed.map(|(n, _)| {
         let address = word_address(&SERVICE, "list_length", n);
-        let value = format!("{:08X}", 0);
-        context! { address, value, why => "no additional data" }
+        context! { address, value => ZERO, why => "no additional data" }
     });
     let all = every_trigger(card).into_iter().enumerate();
     let all = all.filter(|(n, _)| !card.channels[*n].is_endat()).map(|(_, write)| {
@@ -118,7 +120,7 @@ fn writes(card: &CardConfig) -> Vec<Value> {
     measured.chain(forced).chain(listed).chain(all).collect()
 }
 
-/// What a card has and the bench does not check.
+/// The parts of a card that the bench does not check.
 fn unchecked(card: &CardConfig) -> Vec<&'static str> {
     let parts = [
         (card.service.requests, "requests and additional data"),
@@ -163,10 +165,7 @@ pub fn artifact(
         return Ok(None);
     };
     let card = &project.card;
-    let ports: Vec<Port> = card
-        .endat_channels()
-        .map(|(n, channel)| Port::new(card, n, channel))
-        .collect();
+    let ports = ports(card);
     let count = card.channels.len();
     let settle_cycles = match project.bus {
         HostBus::Uart => UART_SETTLE_BITS as u64 * card.uart_bit_cycles,
@@ -199,7 +198,7 @@ pub fn artifact(
         settle_cycles,
         trigger_cycles_max => TRIGGER_CYCLES,
         abort_us => ABORT_US,
-        measuring_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
+        measuring_frames => measuring_frames(card),
         delay_spare => delay_spare(card),
         launch_ns => LAUNCH_NS,
         input_cycles => INPUT_CYCLES,
@@ -265,10 +264,9 @@ fn register_map(text: &str) -> String {
         &INTERRUPT,
         &DIRECT,
     ];
-    let is_used = |name: &str| {
-        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-        words.any(|word| word == name)
-    };
+    let used = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+    let used: BTreeSet<&str> = used.collect();
+    let is_used = |name: &str| used.contains(name);
     let words = blocks.into_iter().flat_map(words);
     let words = words.filter(|word| is_used(&word.name));
     let words = words.map(|w| format!("    constant {} : natural := 16#{}#;\n", w.name, w.address));

@@ -562,24 +562,27 @@ module s6_two_channel_tb;
         end
     endtask
 
+    task send_word(input [31:0] value);
+        begin
+            send_byte(value[31:24]);
+            send_byte(value[23:16]);
+            send_byte(value[15:8]);
+            send_byte(value[7:0]);
+        end
+    endtask
+
     task send_command(input [7:0] command, input integer words, input [31:0] address);
         begin
             send_byte(command);
             send_byte(words[7:0]);
-            send_byte(address[31:24]);
-            send_byte(address[23:16]);
-            send_byte(address[15:8]);
-            send_byte(address[7:0]);
+            send_word(address);
         end
     endtask
 
     task bus_write;
         begin
             send_command(8'h01, 1, access_address);
-            send_byte(access_value[31:24]);
-            send_byte(access_value[23:16]);
-            send_byte(access_value[15:8]);
-            send_byte(access_value[7:0]);
+            send_word(access_value);
         end
     endtask
 
@@ -599,15 +602,6 @@ module s6_two_channel_tb;
     function [31:0] word(input integer index);
         word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
     endfunction
-
-    task send_word(input [31:0] value);
-        begin
-            send_byte(value[31:24]);
-            send_byte(value[23:16]);
-            send_byte(value[15:8]);
-            send_byte(value[7:0]);
-        end
-    endtask
 
     // Writes of several words without a pause, reads of 33 words, addresses beyond the map, a command that stops in the middle.
     task bus_limits;
@@ -829,7 +823,7 @@ module s6_two_channel_tb;
     reg is_measuring;
     real trigger_time, fall_time, fall_time_before;
     real waited_ns;
-    // From the end of a frame at the encoder to the end of everything in the card.
+    // The card needs this long after the end of a frame at the encoder.
     localparam real RESULT_NS = 5200.0;
     reg [31:0] trigger_count;
     integer step;
@@ -1056,10 +1050,10 @@ module s6_two_channel_tb;
     endtask
 
     localparam real WIDEST_NS = 58150.0;
-    // From the end of the timer's period to the first falling edge.
+    // Time between the end of the timer's period and the first falling edge.
     localparam integer TIMER_CYCLES = 5;
 
-    // What the steps "widths", "start window" and "unknown command" change for a while: words of each EnDat channel as they were.
+    // The steps "widths", "start window" and "unknown command" change these words of each EnDat channel, and write them back.
     reg [31:0] frame_word [0:CHANNELS-1];
     integer port;
 
@@ -1146,7 +1140,7 @@ module s6_two_channel_tb;
         end
     endtask
 
-    // A trigger that a channel cannot take, as its results say it.
+    // A channel loses a trigger: its results must say so.
     function [4:0] overrun_cause(input integer channel);
         begin
             overrun_cause = TRIGGER_OVERRUN;
@@ -1197,12 +1191,12 @@ module s6_two_channel_tb;
         end
     endtask
 
-    // From the last trigger to the end of the last frame at an encoder.
+    // Time between the last trigger and the end of the last frame at an encoder.
     real frame_ns;
     always @(encoder_frames)
         frame_ns = $realtime - trigger_time;
 
-    // From a trigger to the first falling edge behind the frames that measure.
+    // Time between a trigger and the first falling edge after the frames that measure.
     reg finds_second;
     real second_ns;
     initial finds_second = 1'b0;
@@ -1212,7 +1206,7 @@ module s6_two_channel_tb;
             finds_second = 1'b0;
         end
 
-    // A trigger that comes in this distance behind one whose delay is measured first: lost on the first channel, and told.
+    // The second trigger comes this long after one that measures the delay first. The first channel loses it and reports it.
     task trigger_while_measuring(input real apart_ns);
         begin
             write_word(CARD_CALIBRATE, ~(32'hFFFFFFFF << CHANNELS));
@@ -1531,7 +1525,7 @@ module s6_two_channel_tb;
 
         end
         tell("bus");
-        // What a host may do at this bus besides whole accesses one after the other.
+        // The host breaks off, stalls and joins accesses, as its bus allows.
         bus_limits;
 
         tell("one word read again and again");

@@ -10,9 +10,9 @@ use endat_gen::readers::passes;
 use endat_hdl::card::bus::HostBus;
 use std::collections::BTreeMap;
 
-/// What an edit has, no more and no less.
+/// Keys of an edit.
 const KEYS: [&str; 5] = ["after", "before", "breaks", "card", "file"];
-/// Of these the bench ends in its first steps.
+/// The bench sees these in its first steps.
 const QUICK: [&str; 2] = [
     "the trigger pin has a synchroniser stage less",
     "the clock never stops",
@@ -47,7 +47,7 @@ fn edits() -> Vec<Edit> {
         .collect()
 }
 
-/// What is emitted for a card of the table.
+/// Emits a card of the table.
 fn emitted(card: &str) -> Vec<Artifact> {
     let is_of = |bus: &HostBus| card.strip_suffix("_card") == Some(bus.name());
     if let Some(bus) = HostBus::ALL.into_iter().find(is_of) {

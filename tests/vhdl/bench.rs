@@ -30,7 +30,7 @@ const LINK: &str = "[link]\nbaud = 1_000_000\n";
 const SHORT: &str = "-gSHORT=true";
 /// Presets whose whole bench is run: the others have frames of many cycles.
 const WHOLE: [&str; 4] = ["clb_2mhz", "demo", "mixed_protocols", "ssi_two_channel"];
-/// What the bench does not see: no result is another one, and nothing reads at the moment in which one is loaded.
+/// The bench does not see these: one changes no result, the other needs a read while a result is loaded.
 const NOT_SEEN: [&str; 2] = [
     "delay measured a cycle too long",
     "results are taken too early",

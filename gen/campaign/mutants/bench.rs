@@ -164,7 +164,7 @@ pub fn sums_alone(subject: &Subject, cycles: usize) -> Result<Vec<u64>, GenError
 /// Runs the bench of a card as it is.
 pub fn record(emission: &Emission) -> Result<Recording, GenError> {
     let program = Program::new(emission, &[])?;
-    // What is set inside a card, a recording of its pins does not have.
+    // A recording of pins does not have the registers that the bench sets inside the card.
     let sums = program.play(&["+inputs", "+no_deposit"])?.0.sums;
     let inputs = scratch::read(&program.folder.path().join("inputs.txt"))?;
     Ok(Recording { inputs, sums })

@@ -164,7 +164,7 @@ struct Subjects {
     card: Option<CardSubject>,
 }
 
-/// Of the random cases, each subject but the first one has an eighth.
+/// Each subject but the first one gets an eighth of the random cases.
 const SHARE: u64 = 8;
 
 /// Upsets of these subjects.

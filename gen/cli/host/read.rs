@@ -76,7 +76,7 @@ pub fn is_in_range(reading: &Reading, scale: &Scale) -> bool {
     !reading.valid || scale.fits(reading.position)
 }
 
-/// What kind of result it is, and the special bits that came with it.
+/// Names the kind of a result, and its special bits.
 pub fn verdict(reading: &Reading, scale: &Scale) -> String {
     match reading.special_bits {
         Some(bits @ 1..) => format!("{}, special bits 0x{bits:02X}", kind(reading, scale)),

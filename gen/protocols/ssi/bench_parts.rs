@@ -1,7 +1,7 @@
 //! The SSI encoders of a test bench: who is on which line, and what the bench does with them.
 
 use crate::error::GenError;
-use crate::other_protocol::{BenchParts, VhdlParts, VHDL_PLACES};
+use crate::other_protocol::{BenchParts, VhdlParts};
 use crate::template;
 use crate::testbench::text::{real, whole};
 use endat_hdl::config::{CardConfig, ChannelConfig};
@@ -227,7 +227,7 @@ fn shortest_cycles(card: &CardConfig) -> u64 {
     frames.min().unwrap_or(0)
 }
 
-/// What the bench in VHDL of a card with SSI channels has besides.
+/// The parts of the VHDL bench for the SSI channels of a card.
 pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, GenError> {
     let ports = speakers(card).map(|(n, c, asked)| Port::new(card, n, c, asked));
     let ports: Vec<Port> = ports.collect();
@@ -250,20 +250,13 @@ pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, Gen
         late_ns => whole(speakers(card).map(|(_, c, _)| late_ns(card, c)).max().unwrap_or(0)),
     };
     let template = include_str!("../../templates/vhdl/bench/ssi.vhd.jinja");
-    let text = |place: &'static str| {
-        let context = context! { part => place, ..facts.clone() };
-        Ok((place, template::render("ssi.vhd", template, &context)?))
-    };
     let longest = speakers(card).map(|(_, c, _)| c.cycle_max_cycles(card.system_hz));
     Ok(VhdlParts {
         word: Protocol::Ssi.row().word,
         longest_cycles: longest.max().unwrap_or(0),
         shortest_cycles: shortest_cycles(card),
         unchecked: has_alarms.then_some("alarms of SSI special bits"),
-        texts: VHDL_PLACES
-            .into_iter()
-            .map(text)
-            .collect::<Result<_, GenError>>()?,
+        texts: VhdlParts::texts(template, &facts)?,
     })
 }
 

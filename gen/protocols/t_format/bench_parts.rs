@@ -1,7 +1,7 @@
 //! The T-format encoders of a test bench: who is on which line, and what the bench does with them.
 
 use crate::error::GenError;
-use crate::other_protocol::{BenchParts, VhdlParts, VHDL_PLACES};
+use crate::other_protocol::{BenchParts, VhdlParts};
 use crate::template;
 use crate::testbench::text::{fields, real, whole, words, Bits, MARGIN_NS};
 use endat_hdl::config::{CardConfig, ChannelConfig};
@@ -52,7 +52,7 @@ struct Port {
     has_multi: u8,
     has_identity: u8,
     has_alarm: u8,
-    /// Of the bench in VHDL: nominal length of a bit, and a letter for each field of the reply.
+    /// For the VHDL bench: nominal length of a bit, and a letter for each field of the reply.
     bit_ns: String,
     reply: String,
 }
@@ -113,7 +113,7 @@ fn fields_max() -> usize {
     fields.max().unwrap_or(0)
 }
 
-/// What an edge of a request may be off, in bits.
+/// Tolerance of an edge of a request, in bits.
 fn tolerance() -> f64 {
     FIELD_BITS as f64 * RATE_TOLERANCE_PPM as f64 / 1e6 + EDGE_BITS
 }
@@ -121,16 +121,29 @@ fn tolerance() -> f64 {
 /// From a reply to the next request, in ns: the receiver's rest begins within the last delimiter.
 const REST_NS: u64 = 500 * (REST_US - 1);
 
-/// What the bench in VHDL of a card with T-format channels has besides.
-pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, GenError> {
+/// The T-format channels of a card.
+fn speakers(card: &CardConfig) -> impl Iterator<Item = (usize, &ChannelConfig, &TFormatSpec)> {
     let channels = card.channels.iter().enumerate();
-    let speakers = channels.filter_map(|(n, c)| Some((n, c, c.spoken.t_format()?)));
-    let (longest, exchanges) = (speakers.clone(), speakers.clone());
-    let longest = longest.map(|(_, c, _)| c.cycle_max_cycles(card.system_hz));
-    let exchanges = exchanges.map(|(_, c, wanted)| c.period_cycles * wanted.request.wire_bits());
-    let ports: Vec<Port> = speakers
-        .map(|(n, c, wanted)| Port::new(card, n, c, wanted))
-        .collect();
+    channels.filter_map(|(n, c)| Some((n, c, c.spoken.t_format()?)))
+}
+
+/// The encoders on these channels.
+fn ports(card: &CardConfig) -> Vec<Port> {
+    let ports = speakers(card).map(|(n, c, wanted)| Port::new(card, n, c, wanted));
+    ports.collect()
+}
+
+/// The shortest exchange of a card's T-format channels, in system clock cycles.
+fn shortest_cycles(card: &CardConfig) -> u64 {
+    let exchanges =
+        speakers(card).map(|(_, c, wanted)| c.period_cycles * wanted.request.wire_bits());
+    exchanges.min().unwrap_or(0)
+}
+
+/// The parts of the VHDL bench for the T-format channels of a card.
+pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, GenError> {
+    let longest = speakers(card).map(|(_, c, _)| c.cycle_max_cycles(card.system_hz));
+    let ports = ports(card);
     let channels: Vec<usize> = ports.iter().map(|p| p.index).collect();
     let causes = CAUSES.into_iter().collect::<BTreeMap<_, _>>();
     let facts = context! {
@@ -147,18 +160,12 @@ pub(crate) fn vhdl_parts(name: &str, card: &CardConfig) -> Result<VhdlParts, Gen
         trigger_overrun => cause::TRIGGER_OVERRUN,
     };
     let template = include_str!("../../templates/vhdl/bench/t_format.vhd.jinja");
-    let text = |place: &'static str| {
-        let context = context! { part => place, ..facts.clone() };
-        Ok((place, template::render("t_format.vhd", template, &context)?))
-    };
     Ok(VhdlParts {
         word: Protocol::TFormat.row().word,
         longest_cycles: longest.max().unwrap_or(0) + cycles_at_least(IDLE_NS, card.system_hz),
-        shortest_cycles: exchanges.min().unwrap_or(0),
+        shortest_cycles: shortest_cycles(card),
         unchecked: Some("requests of the host on T-format channels"),
-        texts: (VHDL_PLACES.into_iter())
-            .map(text)
-            .collect::<Result<_, GenError>>()?,
+        texts: VhdlParts::texts(template, &facts)?,
     })
 }
 
@@ -247,17 +254,11 @@ pub(crate) const IDLE_NS: u64 = 25_000;
 
 /// What the bench of a card with T-format channels has besides.
 pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<BenchParts, GenError> {
-    let channels = card.channels.iter().enumerate();
-    let speakers = channels.filter_map(|(n, c)| Some((n, c, c.spoken.t_format()?)));
-    let exchanges = speakers.clone();
-    let ports: Vec<Port> = speakers
-        .map(|(n, c, wanted)| Port::new(card, n, c, wanted))
-        .collect();
+    let ports = ports(card);
     let silent = ports.iter().filter(|p| p.has_single + p.has_multi == 0);
     let silent = silent.map(|p| p.index).collect();
     let masks = ports.iter().map(|p| (p.index, p.mask.clone())).collect();
     let numbers = ports.iter().map(|p| p.index).collect();
-    let exchanges = exchanges.map(|(_, c, wanted)| c.period_cycles * wanted.request.wire_bits());
     let context = context! {
         name,
         sleeps,
@@ -292,7 +293,7 @@ pub(crate) fn parts(name: &str, card: &CardConfig, sleeps: bool) -> Result<Bench
         )?,
         silent,
         masks,
-        shortest_cycles: exchanges.min().unwrap_or(0),
+        shortest_cycles: shortest_cycles(card),
     })
 }
 

@@ -41,24 +41,27 @@
         end
     endtask
 
+    task send_word(input [31:0] value);
+        begin
+            send_byte(value[31:24]);
+            send_byte(value[23:16]);
+            send_byte(value[15:8]);
+            send_byte(value[7:0]);
+        end
+    endtask
+
     task send_command(input [7:0] command, input integer words, input [31:0] address);
         begin
             send_byte(command);
             send_byte(words[7:0]);
-            send_byte(address[31:24]);
-            send_byte(address[23:16]);
-            send_byte(address[15:8]);
-            send_byte(address[7:0]);
+            send_word(address);
         end
     endtask
 
     task bus_write;
         begin
             send_command(8'h01, 1, access_address);
-            send_byte(access_value[31:24]);
-            send_byte(access_value[23:16]);
-            send_byte(access_value[15:8]);
-            send_byte(access_value[7:0]);
+            send_word(access_value);
         end
     endtask
 
@@ -92,15 +95,6 @@
     function [31:0] word(input integer index);
         word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
     endfunction
-
-    task send_word(input [31:0] value);
-        begin
-            send_byte(value[31:24]);
-            send_byte(value[23:16]);
-            send_byte(value[15:8]);
-            send_byte(value[7:0]);
-        end
-    endtask
 
     // Writes of several words without a pause, reads of 33 words, addresses beyond the map, a command that stops in the middle.
     task bus_limits;
