@@ -428,9 +428,7 @@ pub fn play(project: &Project, name: &str, bench: &str) -> Option<String> {
 
 /// All Verilog of a project and the primitives, in a folder of its own.
 pub fn lay_out(project: &Project, test: &str) -> (PathBuf, Vec<String>) {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("constraints-{test}"));
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
+    let folder = crate::tools::folder(&format!("constraints-{test}"));
     let primitives = format!("{PRIMITIVES}{}", include_str!("data/primitives.v"));
     let mut files = vec![("primitives.v".to_owned(), primitives)];
     let emitted = endat_gen::emit(project).unwrap();

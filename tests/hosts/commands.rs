@@ -469,9 +469,7 @@ fn every_name_of_the_map_is_explained() {
 /// Nothing would ever come: said at once, and no file is made.
 #[test]
 fn a_log_without_triggers_is_refused() {
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("log-without-triggers");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
+    let folder = tools::folder("log-without-triggers");
     let text = endat_gen::config::preset("s6_two_channel").unwrap();
     let line = text.lines().find(|l| l.starts_with("sources = ")).unwrap();
     let file = folder.join("silent.toml");

@@ -40,7 +40,7 @@ fn words(row: &'static toml::Table, key: &str) -> Vec<&'static str> {
 
 fn stranger(row: &'static toml::Table) -> Stranger {
     let known = [
-        "name", "pip", "version", "asks", "programs", "modules", "does", "tests",
+        "name", "pip", "version", "install", "asks", "programs", "modules", "does", "tests",
     ];
     for key in row.keys() {
         assert!(known.contains(&key.as_str()), "{key}: unknown");

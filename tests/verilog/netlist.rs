@@ -26,8 +26,7 @@ fn synthesised(family: &Family) -> Synthesis {
         .filter(|f| is_core(f))
         .cloned()
         .collect();
-    // Runners with a process for each test synthesise it more than once, at the same time.
-    let folder = tools::folder(&format!("netlist-{}-{}", family.name, std::process::id()));
+    let folder = tools::folder(&format!("netlist-{}", family.name));
     area::synthesise(&folder, &files, DEFAULT_PRESET, family).unwrap()
 }
 
