@@ -116,6 +116,12 @@ impl Ranges {
                 endat_regs::protocol::MAX_POSITION_BITS - at
             ))
         })?;
+        if said == Said::Linear && protocol.row().turns_at.is_some() {
+            return Err(wrong(format!(
+                "positions of {} count turns; give bits of the angle and bits that count turns, as in {channel}=17+16",
+                protocol.name()
+            )));
+        }
         if let (Said::Rotary { single, multi }, Some(bits)) = (said, position_bits) {
             if single + multi != bits && protocol.row().turns_at.is_none() {
                 return Err(wrong(format!(
@@ -177,6 +183,12 @@ mod tests {
         assert!(
             why.contains("has 24 bits of angle and 24 of turns"),
             "{why}"
+        );
+        // A scale has no place for the turns of this protocol.
+        let why = scale(1, Protocol::TFormat, Some(48)).unwrap_err();
+        assert_eq!(
+            why.to_string(),
+            "--range = 1=linear: positions of T-format count turns; give bits of the angle and bits that count turns, as in 1=17+16"
         );
         assert!(said.check(4).is_ok());
         let why = said.check(2).unwrap_err().to_string();

@@ -2,7 +2,7 @@
 
 use crate::program::{bad, good, program, run, Dir};
 use endat_gen::config::keys::{self, ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES};
-use endat_gen::config::{parse_any, Configuration};
+use endat_gen::config::{parse, parse_any, Configuration};
 use endat_gen::json_schema::plain;
 use std::io::Write;
 use std::process::{Output, Stdio};
@@ -250,6 +250,16 @@ fn what_the_data_sheet_of_an_ssi_encoder_says_is_asked_for() {
         "end_low = true",
     ] {
         assert!(made.contains(&format!("\n{line}\n")), "{line}: {made}");
+    }
+    // The bits that the angle leaves count turns, so that either may be answered first.
+    for turns in [
+        &["--single-turn-bits", "12"][..],
+        &["--multi-turn-bits", "12"],
+    ] {
+        let made = new("ssi", &[&["--position-bits", "24"], turns].concat());
+        let card = parse("new.toml", &made.stdout).unwrap().card;
+        let bits = card.channels.iter().map(|c| c.turn_bits());
+        assert!(bits.eq([Some([12, 12]), Some([12, 12])]), "{made:?}");
     }
     for (protocol, option, value, told) in [
         ("ssi", "--twice", "yes", "channel.twice = yes: is neither"),

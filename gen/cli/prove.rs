@@ -9,6 +9,7 @@ use crate::error::GenError;
 use crate::prove::frames::{prove_cases, Line, Undriven, PHASES};
 use crate::prove::{self, Report, Subject};
 use clap::Args;
+use endat_hdl::endat::timing::cycles_at_most;
 use std::path::PathBuf;
 
 /// Largest Verilog file that is read.
@@ -27,7 +28,7 @@ pub struct ProveArgs {
     /// Folder for counterexamples (VCD and SVG)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles, no longer than cable_m allows
+    /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
     #[arg(long, value_name = "DELAY_CYCLES", value_parser = crate::number::parser(0, 1023), allow_negative_numbers = true)]
     frames: Option<u32>,
     /// Phases of the microsecond in which these frames begin, evenly spread [default: 16, or all where there are fewer]
@@ -106,6 +107,22 @@ fn subject(configuration: &Configuration) -> Result<Subject, GenError> {
     }
 }
 
+/// Refuses a cable that is longer than the settings of the first channel allow: its frames need not arrive.
+fn check_delay(project: &Project, delay_cycles: u32) -> Result<(), GenError> {
+    let Some((_, channel)) = project.card.endat_channels().next() else {
+        return Ok(());
+    };
+    let there_and_back = cycles_at_most(channel.spec.delay_max_ns(), project.card.system_hz);
+    let most = there_and_back / 2;
+    if u64::from(delay_cycles) <= most {
+        return Ok(());
+    }
+    Err(GenError::input(format!(
+        "--frames = {delay_cycles}: a delay of at most {most} system clock cycles one way is what cable_m = {} allows; give at most {most}, or raise cable_m",
+        channel.spec.cable_m
+    )))
+}
+
 /// A frame of the first channel.
 fn frames(
     arguments: &ProveArgs,
@@ -113,6 +130,7 @@ fn frames(
     project: &Project,
     delay_cycles: u32,
 ) -> Result<Outcome, GenError> {
+    check_delay(project, delay_cycles)?;
     let undriven = arguments.undriven;
     let undriven = undriven.unwrap_or_else(|| Undriven::usual(&project.card));
     let line = Line::usual(delay_cycles, undriven, project.card.system_hz);

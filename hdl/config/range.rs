@@ -188,5 +188,13 @@ mod tests {
             assert!(why.contains(told), "{why}");
         }
         assert!(resolved(&spec(asked(Request::SingleTurn), 0, [17, 0])).is_ok());
+        let scale = |request| ChannelSpec {
+            range: Some(PositionRange::Linear),
+            ..spec(asked(request), 0, [0, 0])
+        };
+        assert!(resolved(&scale(Request::SingleTurn)).is_ok());
+        let told = "linear = true: request = 3 brings turns, and a scale has none; remove it, or set request to 0";
+        let why = resolved(&scale(Request::Everything)).unwrap_err();
+        assert!(why.contains(told), "{why}");
     }
 }

@@ -231,7 +231,14 @@ pub static QUESTIONS: &[Question] = &[
             let has_single = single.is_some_and(|told| !told.is_empty());
             is_card(answers) && (has_single || !has_turns_apart(answers))
         },
-        usual: |_| vec![String::new()],
+        usual: |answers| {
+            let number = |name: &str| answers.get(name).and_then(|told| value(told));
+            let (width, single) = (number("position-bits"), number("single-turn-bits"));
+            // The bits that the angle leaves count turns.
+            let rest = width.and_then(|width| width.checked_sub(single?));
+            let rest = rest.filter(|rest| *rest > 0 && !has_turns_apart(answers));
+            vec![rest.map_or(String::new(), |rest| rest.to_string())]
+        },
     },
     Question {
         name: "command",

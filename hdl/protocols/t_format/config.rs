@@ -77,11 +77,15 @@ impl TFormatSpec {
 
     /// Refuses bits of what a trigger does not bring.
     fn check_range(&self, check: &mut Check<'_>, request: &ChannelSpec) {
-        let Some([single, multi]) = request.range.and_then(|range| range.bits(0)) else {
-            return;
-        };
         let id = self.request.id();
         let brings = |content| self.request.reply().contains(&content);
+        let Some([single, multi]) = request.range.and_then(|range| range.bits(0)) else {
+            if request.range.is_some() && brings(Content::MultiTurn) {
+                let text = format!("request = {id} brings turns, and a scale has none; remove it, or set request to 0");
+                check.fail("linear", true, text);
+            }
+            return;
+        };
         if !brings(Content::SingleTurn) {
             let text = format!("request = {id} brings no angle; remove it, or set request to 3");
             check.fail("single_turn_bits", single, text);
