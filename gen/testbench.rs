@@ -67,9 +67,10 @@ impl Port {
         // Every channel has another cable, the last one the longest that is allowed for.
         let share = (index + 1) as f64 / card.channels.len() as f64;
         let cable_ns = ((request.delay_max_ns() - LAUNCH_NS) as f64 * share / 2.0).floor() - 0.7;
-        let round_trip_ns = (2.0 * cable_ns) as u64 + LAUNCH_NS;
-        let delay_cycles =
-            cycles_at_most(round_trip_ns, card.system_hz) + INPUT_CYCLES + channel.filter_cycles;
+        // Not rounded before it is counted in cycles, which are no whole number of ns at some clocks.
+        let round_trip_s = (2.0 * cable_ns + LAUNCH_NS as f64) * 1e-9;
+        let round_trip_cycles = (round_trip_s * card.system_hz as f64) as u64;
+        let delay_cycles = round_trip_cycles + INPUT_CYCLES + channel.filter_cycles;
         Self {
             index,
             command: format!("{:06b}", channel.command.code()),
@@ -191,6 +192,27 @@ fn cycle_ns(card: &CardConfig) -> u64 {
 /// Whether a field of the word `frame` says which triggers a channel takes.
 fn is_own_trigger(field: &str) -> bool {
     field == "skip" || field.starts_with("ignore_")
+}
+
+/// From here on a cycle is so short that encoder and cable are a part of it apart from its edges.
+const FAST_HZ: u64 = 200_000_000;
+/// Cycles from a start bit just outside its window to the middle of a bit, at the least, where the bench moves start bits.
+const MOVED_CYCLES: u64 = 4;
+
+/// Whether the bench moves start bits: one outside its window must still be far from the next bit, and nothing rides on the frame.
+fn moves_starts(card: &CardConfig) -> bool {
+    let has_room =
+        |c: &ChannelConfig| 2 * (c.start_window_cycles + MOVED_CYCLES) <= c.period_cycles;
+    let rides = !purpose::configured_list(card).is_empty();
+    !card.line.alignment && !rides && card.endat_channels().all(|(_, c)| has_room(c))
+}
+
+/// Whether the bench resets the card within a frame: what a service, a direct output or another protocol does after it is not told here, and a card that pushes
+/// from the start has no answer for a host then.
+fn resets(card: &CardConfig, bus: HostBus) -> bool {
+    let parts = card.service.requests || card.service.initialise || card.safety.error_test_ms > 0;
+    let starts_alike = !card.line.alignment && !card.outputs.position && !host::pushes(bus, card);
+    card.channels.iter().all(ChannelConfig::is_endat) && !parts && starts_alike
 }
 
 /// EnDat channels, and how far from its place a start bit may be.
@@ -322,6 +344,10 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         measures => purpose::first_measured(card),
         tests => purpose::tests(card),
         windows => windows(card),
+        moves_starts => moves_starts(card),
+        diagnosis => card.service.diagnosis,
+        is_odd_clock => 1_000_000_000 % hz != 0 || hz > FAST_HZ,
+        resets => resets(card, project.bus),
         timer_cycles => TIMER_CYCLES,
         widest_ns => whole(purpose::widest_ns(card)),
         alignment => card.line.alignment,

@@ -3,7 +3,7 @@
 use endat_gen::cli::{self, Outcome};
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 
 /// A folder of its own for one test, emptied before use.

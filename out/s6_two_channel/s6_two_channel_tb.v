@@ -7,7 +7,7 @@
 //   (without OPT_FAST=-O0 it runs some times faster, and takes minutes to compile)
 // It says what it checks, what it leaves out and what it sets inside the card, and ends by itself: with the line PASS, or with FAIL, the number
 // of complaints and an exit code that is not 0. Plusargs (vvp -n tb.vvp +vcd ...):
-// +quick leaves out what takes long, +all leaves out nothing (triggers at every moment of a frame, every width, and what +abort and +slow add),
+// +quick leaves out what takes long, +all leaves out nothing (triggers at every moment of a frame, both levels of each bit at every width, and what +abort and +slow add),
 // +vcd writes s6_two_channel_tb.vcd, +first ends with the first complaint, +abort also waits out the 30 ms after an aborted frame, +slow also tries
 // clock rates below 1 MHz, +no_deposit leaves out the start window and the timer, for which registers inside the card are set.
 
@@ -644,11 +644,26 @@ module s6_two_channel_tb;
                 check("word after a pause", word(0), 32'hA1B2C300);
                 send_byte(8'h02);
                 send_byte(8'h01);
+                #(UART_BIT_NS * 10.0);
                 @(negedge clk);
                 dut.u_bridge.idle_us = 17'd99_998;
                 #(10_000.0);
                 read_words(CARD_CONFIG_HOLD, 1);
                 check("word after a command that stopped", word(0), 32'hA1B2C300);
+                // A last byte without its stop bit: nothing is written, and all is ignored until the line has rested for 100 ms.
+                send_command(8'h01, 1, CARD_CONFIG_TRIGGER_PERIOD);
+                send_byte(8'h00);
+                send_byte(8'h12);
+                send_byte(8'h34);
+                uart_to_card = 1'b0;
+                #(UART_BIT_NS * 10.0);
+                uart_to_card = 1'b1;
+                #(UART_BIT_NS * 10.0);
+                @(negedge clk);
+                dut.u_bridge.idle_us = 17'd99_998;
+                #(10_000.0);
+                read_words(CARD_CONFIG_TRIGGER_PERIOD, 1);
+                check("word after a byte without its stop bit", word(0), 32'h00345678);
             end
             write_word(CARD_CONFIG_HOLD, 32'd0);
             #(SETTLE_NS);
@@ -818,6 +833,7 @@ module s6_two_channel_tb;
     reg [16*CHANNELS-1:0] want_sequence;
     reg [5*CHANNELS-1:0] want_cause;
     reg [CHANNELS-1:0] want_fresh;
+    reg [CHANNELS-1:0] had_position = {CHANNELS{1'b1}}; // not cleared but by a reset
     reg [32*CHANNELS-1:0] want_frames;
     reg [32*CHANNELS-1:0] stamp, stamp_before;
     reg is_measuring;
@@ -913,20 +929,27 @@ module s6_two_channel_tb;
         end
     endtask
 
-    // The snapshot of every channel, against what the encoders did.
-    task check_results;
-        reg [31:0] status;
+    // What every channel has done, at its pins.
+    task check_pins;
         begin
             for (ch = 0; ch < CHANNELS; ch = ch + 1) begin
                 want_sequence[16*ch +: 16] = want_sequence[16*ch +: 16] + 16'd1;
                 want_frames[32*ch +: 32] = want_frames[32*ch +: 32] + (ENDAT[ch] && !no_start[ch] && !may_stop[ch]);
                 if (want_fresh[ch])
                     want_position[48*ch +: 48] = position[48*ch +: 48];
+                had_position[ch] = had_position[ch] | want_fresh[ch];
                 check("frames at the encoder", encoder_frames[32*ch +: 32], want_frames[32*ch +: 32]);
             end
             check("lights of the channels", led_channel, want_fresh);
             check("clocks idle", endat_clk, {CHANNELS{1'b1}});
             check("drivers off", endat_data_oe, {CHANNELS{1'b0}});
+        end
+    endtask
+
+    // The snapshot of every channel, against what the encoders did.
+    task check_results;
+        begin
+            check_pins;
             read_results;
         end
     endtask
@@ -940,7 +963,7 @@ module s6_two_channel_tb;
                 status = word(base);
                 check("sequence", field(status, STATUS_SEQUENCE_LSB, STATUS_SEQUENCE_BITS), want_sequence[16*ch +: 16]);
                 check("cause", field(status, STATUS_CAUSE_LSB, STATUS_CAUSE_BITS), want_cause[5*ch +: 5]);
-                check("valid", field(status, STATUS_VALID_LSB, STATUS_VALID_BITS), ENDAT[ch]);
+                check("valid", field(status, STATUS_VALID_LSB, STATUS_VALID_BITS), ENDAT[ch] && had_position[ch]);
                 check("fresh", field(status, STATUS_FRESH_LSB, STATUS_FRESH_BITS), want_fresh[ch]);
                 check("position", {word(base + RESULT_POSITION_HIGH - RESULT_STATUS), word(base + RESULT_POSITION_LOW - RESULT_STATUS)},
                       want_position[48*ch +: 48]);
@@ -954,6 +977,13 @@ module s6_two_channel_tb;
         end
     endtask
 
+    // The line delay of a channel as results tell it: two words share it.
+    function [31:0] told_delay(input integer channel);
+        told_delay = field(word(BLOCK_STRIDE * channel + RESULT_EVIDENCE - RESULT_STATUS), EVIDENCE_DELAY_CYCLES_LSB, EVIDENCE_DELAY_CYCLES_BITS)
+                     + (field(word(BLOCK_STRIDE * channel + RESULT_AGE_RECOVERY - RESULT_STATUS), AGE_RECOVERY_DELAY_HIGH_LSB, AGE_RECOVERY_DELAY_HIGH_BITS)
+                        << EVIDENCE_DELAY_CYCLES_BITS);
+    endfunction
+
     // CRC, line delay and recovery time; after a whole frame of every channel.
     task check_evidence;
         reg [31:0] evidence, age;
@@ -964,9 +994,7 @@ module s6_two_channel_tb;
                 check("CRC received", field(evidence, EVIDENCE_CRC_RECEIVED_LSB, EVIDENCE_CRC_RECEIVED_BITS), encoder_crc[5*ch +: 5]);
                 check("CRC computed", field(evidence, EVIDENCE_CRC_COMPUTED_LSB, EVIDENCE_CRC_COMPUTED_BITS),
                       encoder_crc[5*ch +: 5] ^ {4'd0, spoil_crc[ch]});
-                // Two words share the delay.
-                check_range("line delay", field(evidence, EVIDENCE_DELAY_CYCLES_LSB, EVIDENCE_DELAY_CYCLES_BITS)
-                            + (field(age, AGE_RECOVERY_DELAY_HIGH_LSB, AGE_RECOVERY_DELAY_HIGH_BITS) << EVIDENCE_DELAY_CYCLES_BITS),
+                check_range("line delay", told_delay(ch),
                             delay_cycles(ch) + 2, delay_cycles(ch) + 2);
                 check_range("recovery time", field(age, AGE_RECOVERY_RECOVERY_CYCLES_LSB, AGE_RECOVERY_RECOVERY_CYCLES_BITS),
                             recovery_cycles(ch) - 4, recovery_cycles(ch) + 1);
@@ -1057,6 +1085,17 @@ module s6_two_channel_tb;
     reg [31:0] frame_word [0:CHANNELS-1];
     integer port;
 
+    // Age of the first channel's position, and when it was asked for.
+    reg [15:0] age, first_age;
+    real aged_at, aged_from;
+    task age_of_first;
+        begin
+            aged_at = $realtime;
+            read_words(RESULT_AGE_RECOVERY + BLOCK_STRIDE * FIRST, 1);
+            age = field(word(0), AGE_RECOVERY_AGE_US_LSB, AGE_RECOVERY_AGE_US_BITS);
+        end
+    endtask
+
     task read_frame_words;
         for (port = 0; port < CHANNELS; port = port + 1) if (ENDAT[port]) begin
             read_words(CONFIG_FRAME + BLOCK_STRIDE * port, 1);
@@ -1097,6 +1136,56 @@ module s6_two_channel_tb;
         end
     endtask
 
+    // A reset in the middle of a frame: no clock edge before the quiet time is over, then the delay is measured, and a first position that is
+    // withdrawn leaves none.
+    task reset_in_a_frame;
+        begin
+            // The faults before are over.
+            stay_high = {CHANNELS{1'b0}};
+            #(20_000.0);
+            end_quiet_time;
+            measuring_frame(ENDAT);
+            new_positions;
+            may_stop = ENDAT;
+            pulse_trigger;
+            #(frame_ns / 2.0);
+            rst = 1'b1;
+            #(CLK_NS * 4.0);
+            rst = 1'b0;
+            write_word(CARD_CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
+            #(SETTLE_NS);
+            pulse_trigger;
+            #(CYCLE_NS);
+            check("channels that started in the quiet time", fallen, {CHANNELS{1'b0}});
+            read_words(CARD_TRIGGER_COUNT, 1);
+            trigger_count = word(0);
+            read_words(RESULT_STATUS, BLOCK_STRIDE * (CHANNELS - 1) + 1);
+            for (ch = 0; ch < CHANNELS; ch = ch + 1) begin
+                check("valid after a reset", field(word(BLOCK_STRIDE * ch), STATUS_VALID_LSB, STATUS_VALID_BITS), 0);
+                want_sequence[16*ch +: 16] = field(word(BLOCK_STRIDE * ch), STATUS_SEQUENCE_LSB, STATUS_SEQUENCE_BITS);
+            end
+            end_quiet_time;
+            want_frames = encoder_frames;
+            want_position = 0;
+            had_position = {CHANNELS{1'b0}};
+            new_positions;
+            pulse_trigger;
+            for (ch = 0; ch < CHANNELS; ch = ch + 1) begin
+                expect_fault(ch, DATA_NOT_FALLING);
+                want_frames[32*ch +: 32] = want_frames[32*ch +: 32] + MEASURING_FRAMES;
+                while (encoder_frames[32*ch +: 32] != want_frames[32*ch +: 32] && $realtime < trigger_time + CALIBRATION_NS)
+                    #(CLK_NS * 10.0);
+                stay_high[ch] = 1'b1;
+            end
+            #(FAULT_NS);
+            check_start;
+            check_results;
+            stay_high = {CHANNELS{1'b0}};
+            end_quiet_time;
+            measuring_frame(ENDAT);
+        end
+    endtask
+
     // How far from its place a start bit may be, in system clock cycles.
     function integer window_cycles(input integer channel);
         case (channel)
@@ -1112,6 +1201,53 @@ module s6_two_channel_tb;
             start_ps[32*port +: 32] = $rtoi((port % 2 == 0 ? is_even_late : !is_even_late) ? 1000.0 * CLK_NS * (window_cycles(port) + beyond)
                                             : -1000.0 * CLK_NS * (window_cycles(port) + beyond));
     endtask
+
+    // The delay follows the start bit, a cycle in each frame, at the most three cycles here; it stops a cycle before its place, or on it.
+    function integer moved_cycles(input integer channel, input is_late);
+        begin
+            moved_cycles = window_cycles(channel) < 3 ? window_cycles(channel) : 3;
+            if (!is_late)
+                moved_cycles = delay_cycles(channel) < moved_cycles ? -delay_cycles(channel) : -moved_cycles;
+        end
+    endfunction
+
+    task check_moved(input is_even_late, input is_moved);
+        for (port = 0; port < CHANNELS; port = port + 1) if (ENDAT[port]) begin
+            want_delay = delay_cycles(port) + 2;
+            if (is_moved)
+                want_delay = want_delay + moved_cycles(port, port % 2 == 0 ? is_even_late : !is_even_late);
+            check_range("line delay that moves", told_delay(port), want_delay - 1, want_delay);
+        end
+    endtask
+
+    // Results of the last frame alone are read.
+    task five_frames;
+        begin
+            for (times = 0; times < 4; times = times + 1) begin
+                new_positions;
+                pulse_trigger;
+                wait_results(CYCLE_NS);
+                check_start;
+                check_pins;
+            end
+            new_positions;
+            frame(CYCLE_NS);
+        end
+    endtask
+
+    task drifts(input is_even_late);
+        begin
+            for (port = 0; port < CHANNELS; port = port + 1) if (ENDAT[port])
+                start_ps[32*port +: 32] = $rtoi(1000.0 * CLK_NS * moved_cycles(port, port % 2 == 0 ? is_even_late : !is_even_late));
+            five_frames;
+            check_moved(is_even_late, 1'b1);
+            start_ps = 0;
+            five_frames;
+            check_moved(is_even_late, 1'b0);
+        end
+    endtask
+
+    integer times, want_delay;
 
     // Inside their windows positions are good, and the next start bits, back in their places, are, too.
     task moved_within(input is_even_late);
@@ -1264,12 +1400,28 @@ module s6_two_channel_tb;
             cycles_to_fall = 0;
             trigger_count = trigger_count + 1;
             // The next period does not end within this.
-            wait_results(CYCLE_NS);
+            wait_results(CYCLE_NS + CLK_NS * left);
             check("channels that the timer started", fallen, ENDAT);
             check("cycles to the timer's trigger", cycles_to_fall, left + TIMER_CYCLES);
             fall_time_before = fall_time;
             fall_time = first_fall[FIRST];
             check_results;
+        end
+    endtask
+
+    // A timer that is off stands at its beginning: one that went on would trigger when it is on again.
+    real written_ns;
+    task stands_while_off(input [23:0] cycles);
+        begin
+            written_ns = $realtime;
+            write_word(CARD_CONFIG_TRIGGER_SOURCES, 32'd0);
+            #(SETTLE_NS);
+            written_ns = $realtime - written_ns;
+            fallen = {CHANNELS{1'b0}};
+            set_timer(cycles - $rtoi(written_ns / CLK_NS) - 24'd200);
+            write_word(CARD_CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_TIMER_LSB);
+            #(2.0 * SETTLE_NS + CYCLE_NS);
+            check("channels that started before the first period ended", fallen, {CHANNELS{1'b0}});
         end
     endtask
 
@@ -1351,8 +1503,10 @@ module s6_two_channel_tb;
         #(CLK_NS * 220.0);
         if (level == 0)
             $display("+quick leaves out: clock rates, outputs, services, widths, start window, triggers late in a frame");
+        if (!may_deposit)
+            $display("+no_deposit leaves out: start window, timer");
         if (level < 2)
-            $display("left out without +all: every width, every moment of a trigger, both sides of each start window, the 30 ms after a fault, rates below 1 MHz");
+            $display("left out without +all: most widths, every moment of a trigger, both sides of each start window, the 30 ms after a fault, rates below 1 MHz");
 
         tell("identification");
         // Only the pin triggers from here on; frames that the timer has begun end.
@@ -1623,12 +1777,16 @@ module s6_two_channel_tb;
 
         if (level > 0) begin
         tell("widths of the position");
-        // Both levels of each bit; +all: every width.
+        // Widths around the steps of the parallel CRC, all of them with +all; both levels of each bit at some, with +all at each of them.
         read_frame_words;
         for (bits = 48; bits > 0; bits = bits - 1)
             if (level > 1 || bits == 48 || bits == 13) begin
                 set_width(ENDAT, bits);
                 both_levels;
+            end else if (bits % 15 == 3 || bits % 15 == 4) begin
+                set_width(ENDAT, bits);
+                new_positions;
+                frame(WIDEST_NS);
             end
         for (port = 0; port < CHANNELS; port = port + 1) if (ENDAT[port])
             set_width(1 << port, frame_word[port] >> FRAME_POSITION_BITS_LSB);
@@ -1642,6 +1800,25 @@ module s6_two_channel_tb;
         finds_second = 1'b1;
         measuring_frame(ENDAT);
         trigger_while_measuring(second_ns - (first_fall[FIRST] - trigger_time));
+        end
+
+        if (level > 0) begin
+        tell("age of a position");
+        // In microseconds, exact over many of them.
+        new_positions;
+        frame(CYCLE_NS);
+        age_of_first;
+        aged_from = aged_at;
+        first_age = age;
+        #(400_000.0);
+        age_of_first;
+        check_range("age after 400 us", age - first_age, $rtoi((aged_at - aged_from) / 1000.0) - 1, $rtoi((aged_at - aged_from) / 1000.0) + 2);
+        end
+
+        if (level > 0) begin
+        tell("line delay that moves");
+        drifts(1'b1);
+        drifts(1'b0);
         end
 
         if (may_deposit && level > 0) begin
@@ -1670,6 +1847,7 @@ module s6_two_channel_tb;
             // All bits change.
             set_period(24'h800010);
             ends_at(24'h800010, 24'd60);
+            stands_while_off(24'h800010);
             read_words(CARD_TRIGGER_COUNT, 1);
             check("trigger_count, timer", word(0), trigger_count);
         end
@@ -1709,6 +1887,11 @@ module s6_two_channel_tb;
             stay_high = {CHANNELS{1'b0}};
             #(ABORT_NS);
             measuring_frame((1 << FIRST) | (1 << LAST));
+        end
+
+        if (may_deposit && level > 0) begin
+        tell("reset within a frame");
+        reset_in_a_frame;
         end
 
 

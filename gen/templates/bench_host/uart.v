@@ -137,11 +137,26 @@
                 check("word after a pause", word(0), 32'hA1B2C300);
                 send_byte(8'h02);
                 send_byte(8'h01);
+                #(UART_BIT_NS * 10.0);
                 @(negedge clk);
                 dut.u_bridge.idle_us = 17'd99_998;
                 #(10_000.0);
                 read_words(CARD_CONFIG_HOLD, 1);
                 check("word after a command that stopped", word(0), 32'hA1B2C300);
+                // A last byte without its stop bit: nothing is written, and all is ignored until the line has rested for 100 ms.
+                send_command(8'h01, 1, CARD_CONFIG_TRIGGER_PERIOD);
+                send_byte(8'h00);
+                send_byte(8'h12);
+                send_byte(8'h34);
+                uart_to_card = 1'b0;
+                #(UART_BIT_NS * 10.0);
+                uart_to_card = 1'b1;
+                #(UART_BIT_NS * 10.0);
+                @(negedge clk);
+                dut.u_bridge.idle_us = 17'd99_998;
+                #(10_000.0);
+                read_words(CARD_CONFIG_TRIGGER_PERIOD, 1);
+                check("word after a byte without its stop bit", word(0), 32'h00345678);
             end
             write_word(CARD_CONFIG_HOLD, 32'd0);
             #(SETTLE_NS);

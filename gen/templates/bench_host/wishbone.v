@@ -42,7 +42,7 @@
         if (wb_ack || wb_err)
             wb_ends = wb_ends + 1;
 
-    task ask(input write, input [31:0] value, input integer cycles);
+    task strobe_for(input write, input [31:0] value, input integer cycles);
         begin
             @(negedge clk);
             wb_cyc = 1'b1;
@@ -79,12 +79,12 @@
                 @(negedge clk);
             host_idle;
             // Left after one cycle: nothing is written.
-            ask(1'b1, 32'hFFFFFF00, 1);
+            strobe_for(1'b1, 32'hFFFFFF00, 1);
             host_idle;
             repeat (ACCESS_CYCLES_MAX)
                 @(negedge clk);
             // Left in the middle of a read: no answer, and the next transfer has its own.
-            ask(1'b0, 32'd0, 5);
+            strobe_for(1'b0, 32'd0, 5);
             host_idle;
             @(negedge clk);
             check("answers without a transfer", wb_ends, 0);
@@ -97,7 +97,7 @@
             check("answers to three transfers", wb_ends, 3);
             // Without a pause: the strobe stays.
             wb_ends = 0;
-            ask(1'b1, 32'h4D5E6F00, 1);
+            strobe_for(1'b1, 32'h4D5E6F00, 1);
             for (k = 0; k < 2 * ACCESS_CYCLES_MAX && wb_ends < 2; k = k + 1) begin
                 @(negedge clk);
                 if (wb_ends == 1) begin
@@ -111,7 +111,7 @@
             check("word written without a pause", answer, 32'h4D5E6F00);
             // A part of a word is refused.
             wb_sel = 4'b1101;
-            ask(1'b1, 32'hFFFFFF00, 1);
+            strobe_for(1'b1, 32'hFFFFFF00, 1);
             for (k = 0; k < ACCESS_CYCLES_MAX && !wb_ack && !wb_err; k = k + 1)
                 @(negedge clk);
             check("wb_err_o for a part of a word", {46'd0, wb_ack, wb_err}, 48'd1);
