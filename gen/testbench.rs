@@ -207,14 +207,6 @@ fn moves_starts(card: &CardConfig) -> bool {
     !card.line.alignment && !rides && card.endat_channels().all(|(_, c)| has_room(c))
 }
 
-/// Whether the bench resets the card within a frame: what a service, a direct output or another protocol does after it is not told here, and a card that pushes
-/// from the start has no answer for a host then.
-fn resets(card: &CardConfig, bus: HostBus) -> bool {
-    let parts = card.service.requests || card.service.initialise || card.safety.error_test_ms > 0;
-    let starts_alike = !card.line.alignment && !card.outputs.position && !host::pushes(bus, card);
-    card.channels.iter().all(ChannelConfig::is_endat) && !parts && starts_alike
-}
-
 /// EnDat channels, and how far from its place a start bit may be.
 fn windows(card: &CardConfig) -> Vec<Value> {
     let channels = card.endat_channels();
@@ -347,7 +339,6 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         moves_starts => moves_starts(card),
         diagnosis => card.service.diagnosis,
         is_odd_clock => 1_000_000_000 % hz != 0 || hz > FAST_HZ,
-        resets => resets(card, project.bus),
         timer_cycles => TIMER_CYCLES,
         widest_ns => whole(purpose::widest_ns(card)),
         alignment => card.line.alignment,

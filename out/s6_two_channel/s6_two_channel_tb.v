@@ -833,7 +833,6 @@ module s6_two_channel_tb;
     reg [16*CHANNELS-1:0] want_sequence;
     reg [5*CHANNELS-1:0] want_cause;
     reg [CHANNELS-1:0] want_fresh;
-    reg [CHANNELS-1:0] had_position = {CHANNELS{1'b1}}; // not cleared but by a reset
     reg [32*CHANNELS-1:0] want_frames;
     reg [32*CHANNELS-1:0] stamp, stamp_before;
     reg is_measuring;
@@ -937,7 +936,6 @@ module s6_two_channel_tb;
                 want_frames[32*ch +: 32] = want_frames[32*ch +: 32] + (ENDAT[ch] && !no_start[ch] && !may_stop[ch]);
                 if (want_fresh[ch])
                     want_position[48*ch +: 48] = position[48*ch +: 48];
-                had_position[ch] = had_position[ch] | want_fresh[ch];
                 check("frames at the encoder", encoder_frames[32*ch +: 32], want_frames[32*ch +: 32]);
             end
             check("lights of the channels", led_channel, want_fresh);
@@ -963,7 +961,7 @@ module s6_two_channel_tb;
                 status = word(base);
                 check("sequence", field(status, STATUS_SEQUENCE_LSB, STATUS_SEQUENCE_BITS), want_sequence[16*ch +: 16]);
                 check("cause", field(status, STATUS_CAUSE_LSB, STATUS_CAUSE_BITS), want_cause[5*ch +: 5]);
-                check("valid", field(status, STATUS_VALID_LSB, STATUS_VALID_BITS), ENDAT[ch] && had_position[ch]);
+                check("valid", field(status, STATUS_VALID_LSB, STATUS_VALID_BITS), ENDAT[ch]);
                 check("fresh", field(status, STATUS_FRESH_LSB, STATUS_FRESH_BITS), want_fresh[ch]);
                 check("position", {word(base + RESULT_POSITION_HIGH - RESULT_STATUS), word(base + RESULT_POSITION_LOW - RESULT_STATUS)},
                       want_position[48*ch +: 48]);
@@ -1133,56 +1131,6 @@ module s6_two_channel_tb;
             for (port = 0; port < CHANNELS; port = port + 1) if (ENDAT[port])
                 position[48*port +: 48] = ~position[48*port +: 48] & width_mask(port);
             frame(WIDEST_NS);
-        end
-    endtask
-
-    // A reset in the middle of a frame: no clock edge before the quiet time is over, then the delay is measured, and a first position that is
-    // withdrawn leaves none.
-    task reset_in_a_frame;
-        begin
-            // The faults before are over.
-            stay_high = {CHANNELS{1'b0}};
-            #(20_000.0);
-            end_quiet_time;
-            measuring_frame(ENDAT);
-            new_positions;
-            may_stop = ENDAT;
-            pulse_trigger;
-            #(frame_ns / 2.0);
-            rst = 1'b1;
-            #(CLK_NS * 4.0);
-            rst = 1'b0;
-            write_word(CARD_CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
-            #(SETTLE_NS);
-            pulse_trigger;
-            #(CYCLE_NS);
-            check("channels that started in the quiet time", fallen, {CHANNELS{1'b0}});
-            read_words(CARD_TRIGGER_COUNT, 1);
-            trigger_count = word(0);
-            read_words(RESULT_STATUS, BLOCK_STRIDE * (CHANNELS - 1) + 1);
-            for (ch = 0; ch < CHANNELS; ch = ch + 1) begin
-                check("valid after a reset", field(word(BLOCK_STRIDE * ch), STATUS_VALID_LSB, STATUS_VALID_BITS), 0);
-                want_sequence[16*ch +: 16] = field(word(BLOCK_STRIDE * ch), STATUS_SEQUENCE_LSB, STATUS_SEQUENCE_BITS);
-            end
-            end_quiet_time;
-            want_frames = encoder_frames;
-            want_position = 0;
-            had_position = {CHANNELS{1'b0}};
-            new_positions;
-            pulse_trigger;
-            for (ch = 0; ch < CHANNELS; ch = ch + 1) begin
-                expect_fault(ch, DATA_NOT_FALLING);
-                want_frames[32*ch +: 32] = want_frames[32*ch +: 32] + MEASURING_FRAMES;
-                while (encoder_frames[32*ch +: 32] != want_frames[32*ch +: 32] && $realtime < trigger_time + CALIBRATION_NS)
-                    #(CLK_NS * 10.0);
-                stay_high[ch] = 1'b1;
-            end
-            #(FAULT_NS);
-            check_start;
-            check_results;
-            stay_high = {CHANNELS{1'b0}};
-            end_quiet_time;
-            measuring_frame(ENDAT);
         end
     endtask
 
@@ -1889,10 +1837,6 @@ module s6_two_channel_tb;
             measuring_frame((1 << FIRST) | (1 << LAST));
         end
 
-        if (may_deposit && level > 0) begin
-        tell("reset within a frame");
-        reset_in_a_frame;
-        end
 
 
         finish;
