@@ -977,9 +977,13 @@ module s6_two_channel_tb;
 
     // The line delay of a channel as results tell it: two words share it.
     function [31:0] told_delay(input integer channel);
-        told_delay = field(word(BLOCK_STRIDE * channel + RESULT_EVIDENCE - RESULT_STATUS), EVIDENCE_DELAY_CYCLES_LSB, EVIDENCE_DELAY_CYCLES_BITS)
-                     + (field(word(BLOCK_STRIDE * channel + RESULT_AGE_RECOVERY - RESULT_STATUS), AGE_RECOVERY_DELAY_HIGH_LSB, AGE_RECOVERY_DELAY_HIGH_BITS)
-                        << EVIDENCE_DELAY_CYCLES_BITS);
+        reg [31:0] evidence, age;
+        begin
+            evidence = word(BLOCK_STRIDE * channel + RESULT_EVIDENCE - RESULT_STATUS);
+            age = word(BLOCK_STRIDE * channel + RESULT_AGE_RECOVERY - RESULT_STATUS);
+            told_delay = field(evidence, EVIDENCE_DELAY_CYCLES_LSB, EVIDENCE_DELAY_CYCLES_BITS)
+                         + (field(age, AGE_RECOVERY_DELAY_HIGH_LSB, AGE_RECOVERY_DELAY_HIGH_BITS) << EVIDENCE_DELAY_CYCLES_BITS);
+        end
     endfunction
 
     // CRC, line delay and recovery time; after a whole frame of every channel.
