@@ -338,6 +338,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         windows => windows(card),
         moves_starts => moves_starts(card),
         diagnosis => card.service.diagnosis,
+        us_cycles => hz / 1_000_000,
         is_odd_clock => 1_000_000_000 % hz != 0 || hz > FAST_HZ,
         timer_cycles => TIMER_CYCLES,
         widest_ns => whole(purpose::widest_ns(card)),

@@ -1764,7 +1764,7 @@ module s6_two_channel_tb;
         first_age = age;
         #(400_000.0);
         age_of_first;
-        check_range("age after 400 us", age - first_age, $rtoi((aged_at - aged_from) / 1000.0) - 1, $rtoi((aged_at - aged_from) / 1000.0) + 2);
+        check_range("age after 400 us", age - first_age, $rtoi((aged_at - aged_from) / (CLK_NS * 100.0)) - 1, $rtoi((aged_at - aged_from) / (CLK_NS * 100.0)) + 2);
         end
 
         if (level > 0) begin
