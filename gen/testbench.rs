@@ -13,6 +13,7 @@ use crate::other_protocol::BenchParts;
 use crate::protocols::others_on;
 use crate::template;
 use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::timebase::cycles_per_us;
 use endat_hdl::card::{service_times, services};
 use endat_hdl::config::{CardConfig, ChannelConfig, PhaseSource};
 use endat_hdl::endat::channel::CALIBRATION_FRAMES;
@@ -254,9 +255,9 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         true => 0,
         false => longest_ns(card, additional_data),
     };
-    let measuring = measuring_frames(card);
-    let calibration_ns =
-        (calibration_ns + additional_data_ns).max(cycle_ns) * measuring as u64 + cycle_ns;
+    let calibration_ns = (calibration_ns + additional_data_ns).max(cycle_ns)
+        * measuring_frames(card) as u64
+        + cycle_ns;
     let timeout = |c: &ChannelConfig| {
         c.recovery_limit_cycles + cycles_at_least(1_000 * c.start_timeout_us, hz)
     };
@@ -312,7 +313,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         pushes => host::pushes(project.bus, card),
         clk_ns => real(clock_ns(hz)),
         calibration_ns => whole(calibration_ns),
-        measuring_frames => measuring,
+        measuring_frames => measuring_frames(card),
         cycle_ns => whole(cycle_ns),
         fault_ns => whole(cycle_ns + longest_ns(card, timeout) + ENCODER_GIVES_UP_NS),
         abort_ns => whole(1_000 * abort_us.unwrap_or(0) + MARGIN_NS),
@@ -338,7 +339,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         windows => windows(card),
         moves_starts => moves_starts(card),
         diagnosis => card.service.diagnosis,
-        us_cycles => hz / 1_000_000,
+        us_cycles => cycles_per_us(hz),
         is_odd_clock => 1_000_000_000 % hz != 0 || hz > FAST_HZ,
         timer_cycles => TIMER_CYCLES,
         widest_ns => whole(purpose::widest_ns(card)),
