@@ -233,6 +233,15 @@ fn widths(card: &CardConfig) -> String {
     format!("{{{}}}", each.collect::<Vec<_>>().join(", "))
 }
 
+/// The model of an EnDat encoder.
+fn encoder(name: &str) -> Result<String, GenError> {
+    template::render(
+        "encoder",
+        include_str!("templates/encoder.v.jinja"),
+        &context! { name },
+    )
+}
+
 /// The test bench of a card; none for a port without a bus.
 pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let card = &project.card;
@@ -266,11 +275,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let shortest_frame = frames.map(|f| f.frame_cycles).chain(exchanges).min();
     let abort_us = card.endat_channels().map(|(_, c)| c.abort_us).max();
     let ports = ports(card);
-    let encoder = template::render(
-        "encoder",
-        include_str!("templates/encoder.v.jinja"),
-        &context! { name => project.name.as_str() },
-    )?;
+    let encoder = encoder(&project.name)?;
     let power_up = power_up(card, &ports, !others.is_empty())?;
     let purpose = purpose::Parts::new(card, &ports)?;
     let blocks = [&CARD, &CARD_CONFIG, &CHANNEL_CONFIG, &RESULT];
