@@ -68,7 +68,7 @@ impl Port {
         // Every channel has another cable, the last one the longest that is allowed for.
         let share = (index + 1) as f64 / card.channels.len() as f64;
         let cable_ns = ((request.delay_max_ns() - LAUNCH_NS) as f64 * share / 2.0).floor() - 0.7;
-        // Not rounded before it is counted in cycles, which are no whole number of ns at some clocks.
+        // Rounded once: a cycle is no whole number of ns at some clocks.
         let round_trip_s = (2.0 * cable_ns + LAUNCH_NS as f64) * 1e-9;
         let round_trip_cycles = (round_trip_s * card.system_hz as f64) as u64;
         let delay_cycles = round_trip_cycles + INPUT_CYCLES + channel.filter_cycles;
@@ -195,17 +195,27 @@ fn is_own_trigger(field: &str) -> bool {
     field == "skip" || field.starts_with("ignore_")
 }
 
-/// From here on a cycle is so short that encoder and cable are a part of it apart from its edges.
-const FAST_HZ: u64 = 200_000_000;
-/// Cycles from a start bit just outside its window to the middle of a bit, at the least, where the bench moves start bits.
-const MOVED_CYCLES: u64 = 4;
+/// The bench moves a start bit so many cycles beyond its window.
+fn beyond_cycles(card: &CardConfig) -> u64 {
+    match card.line.double_edge {
+        true => 4,
+        false => 2,
+    }
+}
 
-/// Whether the bench moves start bits: one outside its window must still be far from the next bit, and nothing rides on the frame.
-fn moves_starts(card: &CardConfig) -> bool {
-    let has_room =
-        |c: &ChannelConfig| 2 * (c.start_window_cycles + MOVED_CYCLES) <= c.period_cycles;
-    let rides = !purpose::configured_list(card).is_empty();
-    !card.line.alignment && !rides && card.endat_channels().all(|(_, c)| has_room(c))
+/// On a cable that holds more clock periods CLOCK waits for the answer, and the bench's encoder does not know when an early start bit is due.
+const PERIODS_MAX: u64 = 4;
+
+/// Whether the bench moves start bits. A start bit outside its window must be at most half a bit from its place, CLOCK must not wait, and no
+/// additional data may come with the frame.
+fn moves_starts(card: &CardConfig, ports: &[Port]) -> bool {
+    let has_room = |c: &ChannelConfig, port: &Port| {
+        port.delay_cycles <= PERIODS_MAX * c.period_cycles
+            && 2 * (c.start_window_cycles + beyond_cycles(card)) <= c.period_cycles
+    };
+    let mut channels = card.endat_channels().zip(ports);
+    let has_list = !purpose::configured_list(card).is_empty();
+    !card.line.alignment && !has_list && channels.all(|((_, c), port)| has_room(c, port))
 }
 
 /// EnDat channels, and how far from its place a start bit may be.
@@ -311,7 +321,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         endat => ports.iter().map(|p| p.index).collect::<Vec<_>>(),
         silent => others.iter().flat_map(|parts| parts.silent.clone()).collect::<Vec<_>>(),
         masks => masks(&others),
-        channels => Serde(ports),
+        channels => Serde(&ports),
         host => host.text,
         connections => Serde(host.connections),
         settle_ns => real(host.settle_ns),
@@ -342,10 +352,10 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         measures => purpose::first_measured(card),
         tests => purpose::tests(card),
         windows => windows(card),
-        moves_starts => moves_starts(card),
+        moves_starts => moves_starts(card, &ports),
+        beyond_cycles => beyond_cycles(card),
         diagnosis => card.service.diagnosis,
         us_cycles => cycles_per_us(hz),
-        is_odd_clock => 1_000_000_000 % hz != 0 || hz > FAST_HZ,
         timer_cycles => TIMER_CYCLES,
         widest_ns => whole(purpose::widest_ns(card)),
         alignment => card.line.alignment,
@@ -375,7 +385,7 @@ pub(crate) fn ports(card: &CardConfig) -> Vec<Port> {
     channels.map(|(i, c)| Port::new(card, i, c)).collect()
 }
 
-/// Adds the parts of the bench that are in files of their own.
+/// Adds the parts of the bench whose templates are files of their own.
 fn with_parts(context: &Value) -> Result<Value, GenError> {
     let part = |name: &str, text: &str| template::render(name, text, context);
     let results = include_str!("templates/bench_results.v.jinja");

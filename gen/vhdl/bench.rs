@@ -21,6 +21,7 @@ use crate::testbench::{
 };
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::services;
+use endat_hdl::card::timebase::cycles_per_us;
 use endat_hdl::config::CardConfig;
 use endat_hdl::endat::service::program::CLEAR_CYCLES;
 use endat_hdl::endat::timing::ABORT_US;
@@ -46,7 +47,7 @@ const CAUSES: [&str; 7] = [
 /// Types, and the encoder on EnDat channels.
 const HEAD: &str = include_str!("../templates/vhdl/bench/head.vhd.jinja");
 const ENCODER: &str = include_str!("../templates/vhdl/bench/encoder.vhd.jinja");
-/// The bench behind the encoders.
+/// Signals, host and steps of the bench.
 const PARTS: [&str; 3] = [
     include_str!("../templates/vhdl/bench/bench.vhd.jinja"),
     include_str!("../templates/vhdl/bench/main.vhd.jinja"),
@@ -193,7 +194,7 @@ pub fn artifact(
         channels => Serde(&ports),
         count,
         system_hz => card.system_hz,
-        cycles_per_us => card.system_hz.div_ceil(1_000_000),
+        cycles_per_us => cycles_per_us(card.system_hz),
         margin_ns => MARGIN_NS,
         settle_cycles,
         trigger_cycles_max => TRIGGER_CYCLES,

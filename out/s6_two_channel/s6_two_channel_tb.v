@@ -603,6 +603,14 @@ module s6_two_channel_tb;
         word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
     endfunction
 
+    // The card believes that the line has rested for so many us.
+    task set_pause(input [16:0] us);
+        begin
+            @(negedge clk);
+            dut.u_bridge.idle_us = us;
+        end
+    endtask
+
     // Writes of several words without a pause, reads of 33 words, addresses beyond the map, a command that stops in the middle.
     task bus_limits;
         begin
@@ -632,8 +640,7 @@ module s6_two_channel_tb;
                 received = 0;
                 send_byte(8'h02);
                 send_byte(8'h01);
-                @(negedge clk);
-                dut.u_bridge.idle_us = 17'd99_900;
+                set_pause(17'd99_900);
                 #(UART_BIT_NS * 10.0);
                 send_byte(8'h00);
                 send_byte(8'h00);
@@ -645,12 +652,11 @@ module s6_two_channel_tb;
                 send_byte(8'h02);
                 send_byte(8'h01);
                 #(UART_BIT_NS * 10.0);
-                @(negedge clk);
-                dut.u_bridge.idle_us = 17'd99_998;
+                set_pause(17'd99_998);
                 #(10_000.0);
                 read_words(CARD_CONFIG_HOLD, 1);
                 check("word after a command that stopped", word(0), 32'hA1B2C300);
-                // A last byte without its stop bit: nothing is written, and all is ignored until the line has rested for 100 ms.
+                // The last byte has no stop bit: the card writes nothing, and ignores all bytes until the line has rested for 100 ms.
                 send_command(8'h01, 1, CARD_CONFIG_TRIGGER_PERIOD);
                 send_byte(8'h00);
                 send_byte(8'h12);
@@ -659,8 +665,7 @@ module s6_two_channel_tb;
                 #(UART_BIT_NS * 10.0);
                 uart_to_card = 1'b1;
                 #(UART_BIT_NS * 10.0);
-                @(negedge clk);
-                dut.u_bridge.idle_us = 17'd99_998;
+                set_pause(17'd99_998);
                 #(10_000.0);
                 read_words(CARD_CONFIG_TRIGGER_PERIOD, 1);
                 check("word after a byte without its stop bit", word(0), 32'h00345678);
@@ -928,7 +933,7 @@ module s6_two_channel_tb;
         end
     endtask
 
-    // What every channel has done, at its pins.
+    // Compares the pins of every channel with its encoder.
     task check_pins;
         begin
             for (ch = 0; ch < CHANNELS; ch = ch + 1) begin
@@ -975,7 +980,7 @@ module s6_two_channel_tb;
         end
     endtask
 
-    // The line delay of a channel as results tell it: two words share it.
+    // The line delay in the results of a channel: two words share it.
     function [31:0] told_delay(input integer channel);
         reg [31:0] evidence, age;
         begin
@@ -1147,17 +1152,22 @@ module s6_two_channel_tb;
         endcase
     endfunction
 
-    // Start bits so many cycles beyond the limits of their windows: on even channels late, on odd ones early, or the other way round.
+    // Start bits come late on even channels and early on odd ones, or the other way round.
+    function goes_late(input integer channel, input is_even_late);
+        goes_late = channel % 2 == 0 ? is_even_late : !is_even_late;
+    endfunction
+
+    // Start bits so many cycles beyond the limits of their windows.
     task move_start(input is_even_late, input integer beyond);
         for (port = 0; port < CHANNELS; port = port + 1) if (ENDAT[port])
-            start_ps[32*port +: 32] = $rtoi((port % 2 == 0 ? is_even_late : !is_even_late) ? 1000.0 * CLK_NS * (window_cycles(port) + beyond)
-                                            : -1000.0 * CLK_NS * (window_cycles(port) + beyond));
+            start_ps[32*port +: 32] = $rtoi((goes_late(port, is_even_late) ? 1000.0 : -1000.0) * CLK_NS * (window_cycles(port) + beyond));
     endtask
 
-    // The delay follows the start bit, a cycle in each frame, at the most three cycles here; it stops a cycle before its place, or on it.
+    // The delay follows the start bit, a cycle in each frame, at the most three cycles here; it stops a cycle before its place, or on it. So the
+    // next start bit may be a cycle farther from it.
     function integer moved_cycles(input integer channel, input is_late);
         begin
-            moved_cycles = window_cycles(channel) < 3 ? window_cycles(channel) : 3;
+            moved_cycles = window_cycles(channel) < 4 ? window_cycles(channel) - 1 : 3;
             if (!is_late)
                 moved_cycles = delay_cycles(channel) < moved_cycles ? -delay_cycles(channel) : -moved_cycles;
         end
@@ -1167,12 +1177,12 @@ module s6_two_channel_tb;
         for (port = 0; port < CHANNELS; port = port + 1) if (ENDAT[port]) begin
             want_delay = delay_cycles(port) + 2;
             if (is_moved)
-                want_delay = want_delay + moved_cycles(port, port % 2 == 0 ? is_even_late : !is_even_late);
+                want_delay = want_delay + moved_cycles(port, goes_late(port, is_even_late));
             check_range("line delay that moves", told_delay(port), want_delay - 1, want_delay);
         end
     endtask
 
-    // Results of the last frame alone are read.
+    // Five frames. The host reads the results of the last one only.
     task five_frames;
         begin
             for (times = 0; times < 4; times = times + 1) begin
@@ -1190,7 +1200,7 @@ module s6_two_channel_tb;
     task drifts(input is_even_late);
         begin
             for (port = 0; port < CHANNELS; port = port + 1) if (ENDAT[port])
-                start_ps[32*port +: 32] = $rtoi(1000.0 * CLK_NS * moved_cycles(port, port % 2 == 0 ? is_even_late : !is_even_late));
+                start_ps[32*port +: 32] = $rtoi(1000.0 * CLK_NS * moved_cycles(port, goes_late(port, is_even_late)));
             five_frames;
             check_moved(is_even_late, 1'b1);
             start_ps = 0;
@@ -1201,9 +1211,13 @@ module s6_two_channel_tb;
 
     integer times, want_delay;
 
-    // Inside their windows positions are good, and the next start bits, back in their places, are, too.
+    // Inside their windows positions are good, and the next start bits, back in their places, are, too. The delay is measured first: the one that
+    // has followed start bits may be a cycle off.
     task moved_within(input is_even_late);
         begin
+            write_word(CARD_CALIBRATE, ~(32'hFFFFFFFF << CHANNELS));
+            #(SETTLE_NS);
+            measuring_frame(ENDAT);
             move_start(is_even_late, 0);
             new_positions;
             frame(CYCLE_NS);
@@ -1361,7 +1375,7 @@ module s6_two_channel_tb;
         end
     endtask
 
-    // A timer that is off stands at its beginning: one that went on would trigger when it is on again.
+    // The timer begins a whole period when it is switched on. A timer that counted while it was off would trigger too early.
     real written_ns;
     task stands_while_off(input [23:0] cycles);
         begin
@@ -1756,7 +1770,7 @@ module s6_two_channel_tb;
 
         if (level > 0) begin
         tell("age of a position");
-        // In microseconds, exact over many of them.
+        // The age counts microseconds of the card.
         new_positions;
         frame(CYCLE_NS);
         age_of_first;
@@ -1840,7 +1854,6 @@ module s6_two_channel_tb;
             #(ABORT_NS);
             measuring_frame((1 << FIRST) | (1 << LAST));
         end
-
 
 
         finish;

@@ -96,6 +96,14 @@
         word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
     endfunction
 
+    // The card believes that the line has rested for so many us.
+    task set_pause(input [16:0] us);
+        begin
+            @(negedge clk);
+            dut.u_bridge.idle_us = us;
+        end
+    endtask
+
     // Writes of several words without a pause, reads of 33 words, addresses beyond the map, a command that stops in the middle.
     task bus_limits;
         begin
@@ -125,8 +133,7 @@
                 received = 0;
                 send_byte(8'h02);
                 send_byte(8'h01);
-                @(negedge clk);
-                dut.u_bridge.idle_us = 17'd99_900;
+                set_pause(17'd99_900);
                 #(UART_BIT_NS * 10.0);
                 send_byte(8'h00);
                 send_byte(8'h00);
@@ -138,12 +145,11 @@
                 send_byte(8'h02);
                 send_byte(8'h01);
                 #(UART_BIT_NS * 10.0);
-                @(negedge clk);
-                dut.u_bridge.idle_us = 17'd99_998;
+                set_pause(17'd99_998);
                 #(10_000.0);
                 read_words(CARD_CONFIG_HOLD, 1);
                 check("word after a command that stopped", word(0), 32'hA1B2C300);
-                // A last byte without its stop bit: nothing is written, and all is ignored until the line has rested for 100 ms.
+                // The last byte has no stop bit: the card writes nothing, and ignores all bytes until the line has rested for 100 ms.
                 send_command(8'h01, 1, CARD_CONFIG_TRIGGER_PERIOD);
                 send_byte(8'h00);
                 send_byte(8'h12);
@@ -152,8 +158,7 @@
                 #(UART_BIT_NS * 10.0);
                 uart_to_card = 1'b1;
                 #(UART_BIT_NS * 10.0);
-                @(negedge clk);
-                dut.u_bridge.idle_us = 17'd99_998;
+                set_pause(17'd99_998);
                 #(10_000.0);
                 read_words(CARD_CONFIG_TRIGGER_PERIOD, 1);
                 check("word after a byte without its stop bit", word(0), 32'h00345678);
