@@ -1,9 +1,12 @@
 //! `new`: questions, and the configurations that come of them.
 
 use crate::program::{bad, good, program, run, Dir};
+use endat_gen::board::{self, Board};
+use endat_gen::cli::Outcome;
 use endat_gen::config::keys::{self, ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES};
-use endat_gen::config::{parse, parse_any, Configuration};
+use endat_gen::config::{parse, parse_any, parse_on, Configuration};
 use endat_gen::json_schema::plain;
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::process::{Output, Stdio};
 
@@ -28,6 +31,9 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// Boards with fewer free pins than the parallel bus has signals.
+const WITH_FEW_PINS: [&str; 2] = ["icebreaker", "tang_nano_9k"];
+
 /// Every way through the questions that asks something else.
 fn ways() -> Vec<Vec<String>> {
     let mut ways = Vec::new();
@@ -36,13 +42,14 @@ fn ways() -> Vec<Vec<String>> {
             "uart", "apb", "wishbone", "axi_lite", "spi", "parallel", "none", "dsp",
         ] {
             let boards = match bus {
-                "uart" => [vec!["none"], endat_gen::board::names()].concat(),
-                "spi" | "parallel" => vec!["none", "papilio_pro"],
+                "uart" | "spi" | "parallel" => [vec!["none"], board::names()].concat(),
                 _ => vec![""],
             };
+            let has_pins = |board: &&&str| bus != "parallel" || !WITH_FEW_PINS.contains(board);
             for board in boards
                 .iter()
                 .filter(|_| protocol == "t_format" || bus != "dsp")
+                .filter(has_pins)
             {
                 let mut way = vec![
                     "--protocol".into(),
@@ -278,24 +285,113 @@ fn what_the_data_sheet_of_an_ssi_encoder_says_is_asked_for() {
     }
 }
 
+/// The values that a remedy such as `use --board none, arty, or --bus uart` names for each option.
+fn remedies(told: &str) -> Vec<(&str, Vec<&str>)> {
+    let (_, remedy) = told.rsplit_once("; use ").expect(told);
+    let options = remedy.split(", or ");
+    let split = options.map(|one| one.split_once(' ').expect(told));
+    split
+        .map(|(o, values)| (o, values.split(", ").collect()))
+        .collect()
+}
+
 /// Catches a board that the help offers and the command refuses, and a remedy that it refuses again.
 #[test]
-fn board_goes_with_every_bus_or_the_error_names_buses_that_have_one() {
-    let new = |bus: &str, board: &str| run(&["new", "-", "--yes", "--bus", bus, "--board", board]);
-    for bus in keys::BUS.words() {
-        let none = new(&bus, "none");
-        assert_eq!(none.exit_code, 0, "{bus}: {none:?}");
-        assert!(!none.stdout.contains("\n[board]"), "{bus}");
-        let named = new(&bus, "papilio_pro");
-        if named.exit_code == 0 {
-            assert!(named.stdout.contains("\nname = \"papilio_pro\""), "{bus}");
+fn board_goes_with_every_bus_or_the_error_names_what_goes() {
+    let new = |bus: &str, board: &str, more: &[&str]| {
+        let first = ["new", "-", "--yes", "--bus", bus, "--board", board];
+        run(&[&first[..], more].concat())
+    };
+    let buses = keys::BUS.words();
+    let boards = [vec!["none"], board::names()].concat();
+    let mut all: BTreeMap<(String, &str), Outcome> = BTreeMap::new();
+    for bus in &buses {
+        all.extend(boards.iter().map(|b| ((bus.clone(), *b), new(bus, b, &[]))));
+    }
+    let is_good = |bus: &str, board: &str| all[&(bus.to_owned(), board)].exit_code == 0;
+    for ((bus, board), made) in &all {
+        let wanted = Some(*board).filter(|board| *board != "none");
+        if made.exit_code == 0 {
+            let read = parse_any("new.toml", &made.stdout).unwrap();
+            let Configuration::Card(card) = read else {
+                assert_eq!(wanted, None, "{bus}");
+                continue;
+            };
+            let found = card.board.as_ref().map(|board| board.name.as_str());
+            assert_eq!(found, wanted, "{bus}");
             continue;
         }
-        let told = named.messages.join("\n");
-        let (_, remedy) = told.split_once("use --board none, or --bus ").expect(&told);
-        for other in remedy.split(", ") {
-            assert_eq!(new(other, "papilio_pro").exit_code, 0, "{other}");
+        let told = made.messages.join("\n");
+        let options = remedies(&told);
+        // None of them goes with a board inside a chip; the parallel bus has many signals.
+        let least = if bus == "parallel" { (8, 2) } else { (1, 2) };
+        let count = |option: &str| {
+            let found = options.iter().find(|(name, _)| *name == option);
+            found.map_or(0, |(_, values)| values.len())
+        };
+        assert!((count("--board"), count("--bus")) >= least, "{told}");
+        for (option, values) in &options {
+            for value in values {
+                match *option {
+                    "--board" => assert!(is_good(bus, value), "{board}: {told}"),
+                    "--bus" => assert!(is_good(value, board), "{board}: {told}"),
+                    option => panic!("{option}: {told}"),
+                }
+            }
         }
+    }
+    let refused = |board: &&str| !is_good("parallel", board);
+    let refused: Vec<&str> = boards.iter().copied().filter(refused).collect();
+    assert_eq!(refused, WITH_FEW_PINS);
+    // More channels than the board has pins for.
+    let told = new("parallel", "ulx3s", &["--channels", "8"])
+        .messages
+        .join("\n");
+    let options = remedies(&told);
+    let (last, values) = options.last().unwrap();
+    assert_eq!((*last, &values[..]), ("--channels", &["7"][..]), "{told}");
+    let made = new("parallel", "ulx3s", &["--channels", "7"]);
+    assert_eq!(made.exit_code, 0, "{made:?}");
+}
+
+/// Catches pins of `new` that the board does not have, and a board of the command line that has too few without a remedy.
+#[test]
+fn emit_takes_free_pins_from_new() {
+    let dir = Dir::new("new-pins");
+    let (path, out) = (dir.path("card.toml"), dir.path("out"));
+    let new = ["new", "--yes", "--bus", "parallel", "--board"];
+    good(&[&new[..], &["zybo_z7_10", &path]].concat());
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(
+        text.contains("check each of\n# them against your wiring"),
+        "{text}"
+    );
+    assert_eq!(text.matches("\nbus_").count(), 22, "{text}");
+    let emit = ["emit", "--config", &path, "--out", &out];
+    assert!(good(&emit).contains("my_card.xdc"));
+    // The same without those pins, on a board of the command line.
+    let (text, _) = text.split_once("\n[board]").unwrap();
+    let text = text.replace("system_hz = 100_000_000", "system_hz = 24_000_000");
+    let text = text.replace("clock_hz = 3_125_000", "clock_hz = 3_000_000");
+    std::fs::write(&path, &text).unwrap();
+    let told = bad(&[&emit[..], &["--board", "icebreaker"]].concat(), 2);
+    assert!(
+        told.contains("--board = icebreaker: has 14 free pins for 22 signals without a usual pin, 8 too few; use one of "),
+        "{told}"
+    );
+    let (_, boards) = told.trim().rsplit_once("; use one of ").unwrap();
+    for board in boards.split(", ") {
+        let board = Board::named(board).unwrap();
+        // The pins that the messages name, if the board has no usual ones.
+        let told = parse_on("card.toml", &text, Some(&board))
+            .err()
+            .unwrap_or_default();
+        let pins = told
+            .iter()
+            .map(|one| one.text.split('`').nth(1).expect(&one.text));
+        let text = format!("{text}[pins]\n{}\n", pins.collect::<Vec<_>>().join("\n"));
+        let read = parse_on("card.toml", &text, Some(&board));
+        assert!(read.is_ok(), "{}: {read:?}", board.name);
     }
 }
 

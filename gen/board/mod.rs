@@ -239,6 +239,23 @@ impl Board {
         self.fixed.get(signal).or_else(|| self.wing.get(signal))
     }
 
+    /// Connector positions that none of these words takes.
+    pub fn free_places<'w>(&self, words: impl Iterator<Item = &'w String>) -> Vec<String> {
+        let taken: BTreeSet<String> = words.filter_map(|word| self.pin(word).ok()).collect();
+        let free = self.places().filter(|(_, pin)| !taken.contains(*pin));
+        free.map(|(place, _)| place).collect()
+    }
+
+    /// Free connector positions for the ports that have no usual one, in their order; `None` if too few are free.
+    pub fn spare_places(&self, ports: &[(String, Kind)]) -> Option<Vec<(String, String)>> {
+        let signals = || ports.iter().map(|(signal, _)| signal);
+        let without = signals().filter(|signal| self.usual_place(signal).is_none());
+        let mut free = self
+            .free_places(signals().filter_map(|s| self.usual_place(s)))
+            .into_iter();
+        without.map(|s| Some((s.clone(), free.next()?))).collect()
+    }
+
     /// The I/O standard of a pin.
     pub fn iostandard_of(&self, pin: &str) -> &str {
         self.iostandards.get(pin).unwrap_or(&self.iostandard)

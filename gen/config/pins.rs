@@ -2,17 +2,67 @@
 
 use super::keys::{BOARD_FILE, BOARD_NAME};
 use super::reader::{Source, Table};
-use crate::board::{Assignment, Board, Kind, OSCILLATOR_PORT};
-use std::collections::BTreeSet;
+use crate::board::{self, Assignment, Board, Kind, OSCILLATOR_PORT};
 use std::path::Path;
+
+/// The board of a card, and where the configuration names it.
+pub(super) struct OnBoard<'a, 's, 't> {
+    pub board: &'a Board,
+    /// `[board]`.
+    pub table: &'a Table<'s, 't>,
+    /// True if the option `--board` names the board in the place of the configuration.
+    pub is_option: bool,
+    /// The system clock in hertz, if its number is good.
+    pub system_hz: Option<u64>,
+}
+
+impl OnBoard<'_, '_, '_> {
+    /// Complains that the board has fewer free pins than the card has signals without a pin.
+    fn complain_short(&self, ports: &[(String, Kind)], wanted: usize, free: usize) {
+        let board = self.board;
+        let fits = |name: &&str| {
+            let other = Board::named(name);
+            other.is_ok_and(|other| {
+                let makes_clock = self.system_hz.is_none_or(|hz| other.pll(hz).is_ok());
+                makes_clock && other.spare_places(ports).is_some()
+            })
+        };
+        let others: Vec<&str> = board::names().into_iter().filter(fits).collect();
+        let list = others.join(", ");
+        let (subject, remedy) = match (self.is_option, &board.file) {
+            (true, _) if others.is_empty() => {
+                ("--board", "give a board's file with more pins".into())
+            }
+            (true, _) => ("--board", format!("use one of {list}")),
+            (false, Some(_)) => (
+                "board.file",
+                "give its [connectors] more pins, or leave [board] out".into(),
+            ),
+            (false, None) if others.is_empty() => ("board.name", "leave [board] out".into()),
+            (false, None) => (
+                "board.name",
+                format!("use one of {list}, or leave [board] out"),
+            ),
+        };
+        let shown = match (self.is_option, &board.file) {
+            (true, _) => board.name.clone(),
+            (false, file) => format!("{:?}", file.as_ref().unwrap_or(&board.name)),
+        };
+        self.table.complain_plain(format!(
+            "{subject} = {shown}: has {free} free pins for {wanted} signals without a usual pin, {} too few; {remedy}",
+            wanted - free
+        ));
+    }
+}
 
 /// The pin of every port; complaints go to `source`.
 pub(super) fn assign_pins(
     source: &Source<'_>,
     pins: &Table<'_, '_>,
-    board: &Board,
+    on: &OnBoard<'_, '_, '_>,
     ports: Vec<(String, Kind)>,
 ) -> Vec<Assignment> {
+    let board = on.board;
     let moved = pins.free_strings();
     for (signal, at) in &moved {
         if !ports.iter().any(|(port, _)| port == signal) {
@@ -21,16 +71,18 @@ pub(super) fn assign_pins(
             pins.complain(at.line, signal, &format!("{:?}", at.value), &text);
         }
     }
-    let taken_pins: BTreeSet<String> = ports
-        .iter()
-        .filter_map(|(signal, _)| {
-            let user = moved.iter().find(|(s, _)| s == signal);
-            user.map(|(_, at)| &at.value)
-                .or_else(|| board.usual_place(signal))
-        })
-        .filter_map(|word| board.pin(word).ok())
-        .collect();
-    let mut free = board.places().filter(|(_, pin)| !taken_pins.contains(*pin));
+    let words = ports.iter().map(|(signal, _)| {
+        let user = moved.iter().find(|(s, _)| s == signal);
+        user.map(|(_, at)| &at.value)
+            .or_else(|| board.usual_place(signal))
+    });
+    let free = board.free_places(words.clone().flatten());
+    let wanted = words.filter(Option::is_none).count();
+    let is_short = wanted > free.len();
+    if is_short {
+        on.complain_short(&ports, wanted, free.len());
+    }
+    let mut next_free = free.iter();
     let mut all = vec![Assignment {
         signal: OSCILLATOR_PORT.into(),
         kind: Kind::Oscillator,
@@ -43,7 +95,9 @@ pub(super) fn assign_pins(
             .map(|at| &at.value)
             .or_else(|| board.usual_place(&signal))
         else {
-            let place = free.next().map_or(String::new(), |(place, _)| place);
+            let Some(place) = next_free.next().filter(|_| !is_short) else {
+                continue;
+            };
             let text = format!(
                 "{}: {} has no usual pin for it; add, for example, `{signal} = \"{place}\"` to [pins]",
                 pins.name(&signal),
@@ -75,9 +129,8 @@ pub(super) fn assign_pins(
             } else {
                 &signal
             };
-            let free = board.places().find(|(_, pin)| !taken_pins.contains(*pin));
-            let remedy = match free {
-                Some((place, _)) => {
+            let remedy = match free.first() {
+                Some(place) => {
                     format!("use another pin for one of the two, for example {place}")
                 }
                 None => "remove the key, or one of the other pins".into(),

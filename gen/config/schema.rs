@@ -4,7 +4,7 @@ use super::channel::{check_overridden, read_endat, read_line_keys, read_other, C
 use super::device::read_initial_values;
 use super::document::parse;
 use super::keys;
-use super::pins::{assign_pins, read_board};
+use super::pins::{assign_pins, read_board, OnBoard};
 use super::reader::{At, Source, Table};
 use super::{
     base, canonical, check_name, line, outputs, protocol, safety, service, stream, trigger, Project,
@@ -87,6 +87,8 @@ struct Written<'s, 't> {
     bus: Option<HostBus>,
     has_board: bool,
     board: Option<Board>,
+    /// True if the option `--board` names the board.
+    is_option: bool,
     system: Option<At<u64>>,
     base_address: Option<u32>,
     line: Option<LineParts>,
@@ -167,6 +169,7 @@ impl<'s, 't> Written<'s, 't> {
             bus,
             has_board,
             board,
+            is_option: other.is_some(),
             system,
             base_address,
             line,
@@ -228,7 +231,13 @@ impl<'s, 't> Written<'s, 't> {
             second_interface: self.safety.is_some_and(|parts| parts.second_interface),
         };
         let ports = card_ports(self.bus?, more, count);
-        Some(assign_pins(source, &t.pins, self.board.as_ref()?, ports))
+        let on = OnBoard {
+            board: self.board.as_ref()?,
+            table: &t.board,
+            is_option: self.is_option,
+            system_hz: self.system_hz(),
+        };
+        Some(assign_pins(source, &t.pins, &on, ports))
     }
 
     fn draft(&self, t: &Tables<'s, 't>) -> CardDraft {

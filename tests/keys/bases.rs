@@ -1,7 +1,7 @@
 //! Configurations that have every key between them.
 
 /// Cards and a receiver that have every key between them, and what is left of a card without any table that may be missing.
-pub const BASES: [&str; 7] = [
+pub const BASES: [&str; 8] = [
     // Whatever a card with a UART may have.
     "name = \"whole\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\ncalibration_hz = 300_000\ntst_ns = 2_000\n\
      filter_ns = 20\nstart_window_ns = 60\ntcal_max_ns = 6_000\nrecovery_min_ns = 12_000\nrecovery_max_ns = 20_000\ncable_m = 30\n\
@@ -25,6 +25,9 @@ pub const BASES: [&str; 7] = [
      bits_before = [\"ignored\"]\nbits_after = [\"alarm\"]\nend_low = true\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
     "name = \"receiver\"\n[host]\nbus = \"dsp\"\n[[channel]]\nprotocol = \"t_format\"\nencoder = \"one\"\nbit_hz = 2_500_000\n\
      request = 6\nreply_gap_us = 30\nfield_gap_us = 3\nfilter_cycles = 2\n[device]\ninitial_values = false\n",
+    // A board with few pins.
+    "name = \"few_pins\"\n[clock]\nsystem_hz = 24_000_000\n[endat]\nclock_hz = 3_000_000\n[[channel]]\nposition_bits = 25\n\
+     command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"spi\"\n[board]\nname = \"icebreaker\"\n",
     "name = \"least\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
      command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"axi_lite\"\n[service]\n[line]\n[outputs]\n[safety]\n[stream]\n",
 ];

@@ -202,7 +202,7 @@ pub fn all(base: &Document, seen: Option<&mut BTreeSet<String>>) -> Vec<Document
     let mut doubled = base.clone();
     doubled.double("name");
     all.push(doubled);
-    for count in [2, 3, 9, 12] {
+    for count in [2, 3, 6, 9, 12] {
         let mut more = base.clone();
         more.repeat(CHANNELS, count);
         all.push(more);

@@ -220,6 +220,24 @@ fn remedies_of_configurations_are_accepted() {
     check(&walk, 250);
 }
 
+/// Catches a remedy without a pin in it for a board that has run out of pins.
+#[test]
+fn board_with_too_few_pins_is_refused_with_boards_that_have_enough() {
+    let few = BASES
+        .iter()
+        .find(|text| text.contains("icebreaker"))
+        .unwrap();
+    let document = Document::new(&few.replace("\"spi\"", "\"parallel\""));
+    let told = read(&document);
+    assert_eq!(told.len(), 1, "{told:?}");
+    let wanted = "has 19 free pins for 22 signals without a usual pin, 3 too few; use one of ";
+    assert!(told[0].text.contains(wanted), "{told:?}");
+    let mut walk = Walk::default();
+    walk.follow(&document, &told[0]);
+    assert_eq!(walk.wrong, [""; 0]);
+    assert_eq!(walk.forms.len(), 2, "{:?}", walk.forms);
+}
+
 #[test]
 #[ignore = "slow: every mistake in every preset, beside seven system clocks"]
 fn remedies_of_all_mistakes_are_accepted() {

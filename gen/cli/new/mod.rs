@@ -1,15 +1,16 @@
 //! `new`: asks a few questions, and writes a configuration with every key explained.
 
+mod complete;
 mod questions;
+mod remedies;
 mod text;
 
 use super::work::say;
 use super::Outcome;
-use crate::config;
-use crate::error::{shown, GenError};
+use crate::error::{shown, Diagnostic, GenError};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
-use questions::{buses_of_boards, has_turns_apart, Answers, Of, Question, NO_BOARD, QUESTIONS};
-use std::collections::BTreeMap;
+use complete::{complete, useless, Wrong};
+use questions::{has_turns_apart, Answers, Of, Question, QUESTIONS};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -74,56 +75,22 @@ impl FromArgMatches for NewArgs {
     }
 }
 
-/// All answers: those that are given, and usual ones that go with them; or what is wrong with those that are given.
+/// All answers: those that are given, and usual ones that go with them; or the messages about those that are given.
 fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
-    // Which of the usual ones; the next one where one does not go with the rest.
-    let mut tried: BTreeMap<&str, usize> = BTreeMap::new();
-    for question in QUESTIONS.iter().filter(|q| given.contains_key(q.name)) {
-        // An optional key may have an empty answer.
-        if given[question.name].is_empty() && question.may_be_empty() {
-            continue;
-        }
-        let literal = text::literal(question.of, &question.option(given), &given[question.name]);
-        literal.map_err(|error| error.messages().to_vec())?;
-    }
-    loop {
-        let mut all = Answers::new();
-        let mut left: Vec<&Question> = Vec::new();
-        for question in QUESTIONS {
-            if !(question.is_asked)(&all) {
-                continue;
+    complete(given).map_err(|wrong| match wrong {
+        Wrong::Answer(messages) => messages,
+        Wrong::Configuration(all, wrong) => {
+            let is_of_board = |one: &&Diagnostic| remedies::is_of_board(&all, &one.text);
+            let (of_board, others): (Vec<_>, Vec<_>) = wrong.iter().partition(is_of_board);
+            match others.is_empty() {
+                true => (of_board.iter())
+                    .map(|one| remedies::of_board(given, &all, &one.text))
+                    .collect(),
+                // No other board helps before these are right.
+                false => others.iter().map(|one| in_options(&one.text)).collect(),
             }
-            let usual = (question.usual)(&all);
-            let at = tried.get(question.name).copied().unwrap_or(0);
-            let answer = match given.get(question.name) {
-                Some(answer) => answer.clone(),
-                None => usual.get(at).cloned().unwrap_or_default(),
-            };
-            if !given.contains_key(question.name) && at + 1 < usual.len() {
-                left.push(question);
-            }
-            all.insert(question.name, answer);
         }
-        let wrong = match config::parse_any("new", &text::written(&all)) {
-            Ok(_) => return Ok(all),
-            Err(wrong) => wrong,
-        };
-        let is_about = |q: &&Question| {
-            let path = q.path(&all);
-            wrong.iter().any(|one| one.text.starts_with(&path))
-        };
-        let is_named = |q: &&Question| {
-            let path = q.path(&all);
-            let key = path.rsplit('.').next().unwrap_or_default();
-            wrong.iter().any(|one| one.text.contains(key))
-        };
-        let next = left.iter().copied().find(is_about);
-        let Some(next) = next.or_else(|| left.iter().copied().find(is_named)) else {
-            let texts = wrong.into_iter().map(|one| in_options(&one.text));
-            return Err(texts.collect());
-        };
-        *tried.entry(next.name).or_default() += 1;
-    }
+    })
 }
 
 /// A complaint whose remedy names options in the place of keys.
@@ -191,18 +158,14 @@ fn ask(
 
 /// Refuses an option that nothing is asked about.
 fn check_asked(given: &Answers, all: &Answers) -> Result<(), GenError> {
-    // A card that no board can have has none.
-    let says_something = |name: &str, told: &str| name != "board" || told != NO_BOARD;
-    let mut useless = (given.iter())
-        .filter(|(name, told)| !all.contains_key(*name) && says_something(name, told));
-    useless.next().map_or(Ok(()), |(name, told)| {
+    useless(given, all).map_or(Ok(()), |(name, told)| {
         let bus = all.get("bus").map_or("", String::as_str);
         let protocol = all.get("protocol").map_or("", String::as_str);
         let (name_of, told) = (*name, shown(told));
         Err(GenError::input(match name_of {
             "board" => format!(
-                "--board = {told}: a card behind bus {bus} stays inside a chip, so it has no board top; use --board {NO_BOARD}, or --bus {}",
-                buses_of_boards().join(", ")
+                "--board = {told}: a card behind bus {bus} stays inside a chip, so it has no board top; {}",
+                remedies::use_another(given, all)
             ),
             // Asked where it follows from nothing.
             "multi-turn-bits" if has_turns_apart(all) => format!(

@@ -1,6 +1,7 @@
 //! The text of a configuration: what was answered, and beside it every key that was not asked for, with what counts without it.
 
 use super::questions::{form_of, has_board, has_uart, place_of, Answers, Of, NOTHING, QUESTIONS};
+use crate::board::{card_ports, Board, Kind as PortKind, MorePorts};
 use crate::config::base::takes;
 use crate::config::keys::{
     self, Key, Kind, Usual, CARD_FORM, CHANNELS, COMMON, ENDAT_FORM, KEYS, TABLES,
@@ -91,6 +92,40 @@ fn about(key: &Key) -> String {
     )))
 }
 
+/// Ports of the card's board top, if it has one.
+fn ports(answers: &Answers) -> Option<(Board, Vec<(String, PortKind)>)> {
+    let name = answers.get("board").filter(|_| has_board(answers))?;
+    let bus = HostBus::from_name(answers.get("bus")?)?;
+    // None of the questions is about an interrupt or the second interface.
+    let ports = card_ports(bus, MorePorts::default(), count(answers)?);
+    Some((Board::named(name).ok()?, ports))
+}
+
+/// The lines of `[pins]`: free pins for signals that the board has no usual pins for; empty if too few are free.
+fn pins(answers: &Answers) -> String {
+    let Some((board, ports)) = ports(answers) else {
+        return String::new();
+    };
+    let spare = board.spare_places(&ports).unwrap_or_default();
+    if spare.is_empty() {
+        return String::new();
+    }
+    let mut text = comment(&format!(
+        "{} has no usual pins for the following signals, so they are on its first free ones: check each of them against your wiring.",
+        board.name
+    ));
+    for (signal, place) in spare {
+        let _ = writeln!(text, "{signal} = \"{place}\"");
+    }
+    text
+}
+
+/// How many channels were answered.
+fn count(answers: &Answers) -> Option<usize> {
+    let told = answers.get("channels").map_or("1", String::as_str);
+    literal(Of::Channels, "channels", told).ok()?.parse().ok()
+}
+
 /// What was answered for a key of a table.
 fn answer(answers: &Answers, key: &Key, table: &str) -> Option<String> {
     let found = QUESTIONS.iter().find(|question| match question.of {
@@ -119,7 +154,12 @@ fn table(text: &mut String, answers: &Answers, table: &str, forms: u8, is_told: 
     let bus = answers.get("bus").and_then(|name| HostBus::from_name(name));
     let is_of_bus = |key: &&Key| bus.is_none_or(|bus| takes(bus, key));
     let keys: Vec<&Key> = keys.filter(is_of_bus).collect();
-    let is_said = keys.iter().any(|key| answer(answers, key, table).is_some());
+    let pins = match table == keys::PINS.tables[0] {
+        true => pins(answers),
+        false => String::new(),
+    };
+    let is_answered = keys.iter().any(|key| answer(answers, key, table).is_some());
+    let is_said = is_answered || !pins.is_empty();
     if table.is_empty() {
         text.push('\n');
     } else {
@@ -149,6 +189,7 @@ fn table(text: &mut String, answers: &Answers, table: &str, forms: u8, is_told: 
             }
         }
     }
+    *text += &pins;
 }
 
 /// The whole text.
@@ -159,9 +200,6 @@ pub fn written(answers: &Answers) -> String {
          `endat-gen explain --config FILE` says what becomes of it all, and `endat-gen explain KEY` more of a key.",
     );
     table(&mut text, answers, "", form, true);
-    let told = answers.get("channels").map_or("1", String::as_str);
-    let count = literal(Of::Channels, "channels", told);
-    let count: Option<usize> = count.ok().and_then(|n| n.parse().ok());
     let is_here = |table: &str| match table {
         "link" => has_uart(answers),
         "board" | "pins" => has_board(answers),
@@ -175,7 +213,7 @@ pub fn written(answers: &Answers) -> String {
             .any(|key| key.tables.contains(name) && key.forms & form != 0);
         match *name {
             keys::CHANNELS => {
-                for n in 0..count.unwrap_or(1) {
+                for n in 0..count(answers).unwrap_or(1) {
                     table(&mut text, answers, CHANNELS, form, n == 0);
                 }
             }
