@@ -5,6 +5,7 @@ mod bases;
 #[allow(dead_code)] // other topics take the rest
 mod bus_card;
 mod config;
+mod explain;
 mod keys;
 mod new;
 #[allow(dead_code)] // other topics take the rest

@@ -29,24 +29,33 @@ fn without_links(text: &str) -> String {
     plain + rest
 }
 
-/// Names of a row in lower case: each of its words, and the symbol at the end of one, such as tD.
+/// Names of a row in lower case: all of its words, each of them, and the symbol at the end of one, such as tD.
 fn names_of(words: &str) -> impl Iterator<Item = String> + '_ {
-    words.split(", ").flat_map(|word| {
+    let all = words.contains(", ").then(|| words.to_ascii_lowercase());
+    let each = words.split(", ").flat_map(|word| {
         let last = word.rsplit(' ').next().filter(|last| *last != word);
         let symbol = last.filter(|last| last.starts_with('t') && last.len() <= 4);
         [Some(word), symbol]
             .into_iter()
             .flatten()
             .map(str::to_ascii_lowercase)
-    })
+    });
+    all.into_iter().chain(each)
 }
 
-/// Rows of a word in lower case.
+/// Rows of a word in lower case, also with the number of a channel or port after it.
 pub fn text(name: &str) -> String {
-    rows()
-        .filter(|(words, _)| names_of(words).any(|known| known == name))
-        .map(|(words, meaning)| format!("{words}: {meaning}\n"))
-        .collect()
+    let of = |name: &str| -> String {
+        rows()
+            .filter(|(words, _)| names_of(words).any(|known| known == name))
+            .map(|(words, meaning)| format!("{words}: {meaning}\n"))
+            .collect()
+    };
+    let text = of(name);
+    match name.rsplit_once(' ') {
+        Some((word, number)) if text.is_empty() && number.parse::<u8>().is_ok() => of(word),
+        _ => text,
+    }
 }
 
 /// All words and symbols.

@@ -567,42 +567,6 @@ fn a_count_that_no_card_has_is_refused_with_its_line() {
     }
 }
 
-/// Catches a row of the report that nobody can look up.
-#[test]
-fn explain_knows_the_words_that_it_prints() {
-    for preset in ["s6_two_channel", "ssi_two_channel", "mixed_protocols"] {
-        let report = run(&["explain", "--preset", preset]).stdout;
-        let (_, channels) = report.split_once("\n\n").unwrap();
-        let heads = channels
-            .lines()
-            .filter(|l| !l.starts_with("channel ") && l.len() > 18);
-        let heads = heads.filter_map(|line| line.get(..18)).map(str::trim);
-        let heads: Vec<&str> = heads
-            .filter(|head| !head.is_empty() && !head.contains(" is the"))
-            .collect();
-        assert!(heads.len() > 4, "{preset}: {report}");
-        for head in heads.into_iter().chain(["tD", "tm", "tST", "supplement"]) {
-            let told = run(&["explain", head]);
-            assert_eq!(told.exit_code, 0, "{preset}, {head}: {told:?}");
-        }
-    }
-    let told = run(&["explain", "tD"]).stdout;
-    assert!(told.contains("propagation delay"), "{told}");
-}
-
-/// Catches a list of everything in the place of a guess.
-#[test]
-fn explain_suggests_for_a_misspelt_name() {
-    let told = run(&["explain", "recoverry time"]);
-    assert_eq!(told.exit_code, 2);
-    assert!(
-        told.messages[0].contains("did you mean recovery time"),
-        "{told:?}"
-    );
-    let told = run(&["explain", "bogus"]);
-    assert!(told.messages[0].len() < 250, "{told:?}");
-}
-
 /// Catches a text that takes every channel but T-format for EnDat.
 #[test]
 fn id_names_the_protocol_of_each_encoder() {
