@@ -580,3 +580,27 @@ fn id_names_the_protocol_of_each_encoder() {
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["encoders"][1]["protocol"], "ssi");
 }
+
+/// Catches a virtual encoder whose upper bits count revolutions and whose name plate says singleturn.
+#[test]
+fn id_calls_a_37_bit_encoder_multiturn() {
+    let text = fs::read_to_string(super::quicker_service_file()).unwrap();
+    let text = text.replace("position_bits = 29", "position_bits = 37");
+    // No device by its name; the width alone decides in channel 0.
+    let text = text.replace("encoder = \"RCN 8510\"", "");
+    let text = text.replacen("multi_turn_bits = 0", "", 1);
+    let text = text.replacen("multi_turn_bits = 0", "multi_turn_bits = 14", 1);
+    let file = tools::folder("id_multiturn").join("card.toml");
+    fs::write(&file, text).unwrap();
+    let port = format!("virtual:{}", file.display());
+    let told = run(&["id", "--port", &port]);
+    assert_eq!(told.exit_code, 0, "{told:?}");
+    for (line, count) in [
+        ("position          37 bits\n", 2),
+        ("revolutions       4096\n", 1),
+        ("revolutions       16384\n", 1),
+        ("singleturn", 0),
+    ] {
+        assert_eq!(told.stdout.matches(line).count(), count, "{line}: {told:?}");
+    }
+}
