@@ -7,6 +7,7 @@ import time
 from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.support.select import Select
 from selenium.webdriver.support.wait import WebDriverWait
 
 url, folder, program = sys.argv[1:]
@@ -17,6 +18,24 @@ options.binary_location = shutil.which(program)
 options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
 browser = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
 browser.set_script_timeout(60)
+# Remembers the labels of the plot: text, box of its letters, and the box of its line for labels of causes.
+browser.execute_cdp_cmd(
+    "Page.addScriptToEvaluateOnNewDocument",
+    {
+        "source": """
+        const { fillText, setTransform } = CanvasRenderingContext2D.prototype;
+        window.labels = [];
+        // Begins a drawing.
+        CanvasRenderingContext2D.prototype.setTransform = function (...all) { window.labels = []; return setTransform.apply(this, all); };
+        CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+          const size = this.measureText(text), isCause = text.startsWith("causes ");
+          const [up, down] = isCause ? [size.fontBoundingBoxAscent, size.fontBoundingBoxDescent] : [size.actualBoundingBoxAscent, size.actualBoundingBoxDescent];
+          window.labels.push({ text, isCause, left: x - size.actualBoundingBoxLeft, right: x + size.actualBoundingBoxRight, top: y - up, bottom: y + down });
+          return fillText.call(this, text, x, y);
+        };
+        """
+    },
+)
 patient = WebDriverWait(browser, 120)
 
 
@@ -59,6 +78,22 @@ def ink():
 
 def label():
     return one("#plot").get_attribute("aria-label")
+
+
+def labels():
+    """The labels of the plot that lie on each other or beside the plot, and how many there are of causes. Labels of causes keep the height of a line apart, others
+    that of their letters."""
+    return browser.execute_script(
+        """
+        const canvas = document.getElementById("plot"), over = [];
+        const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+        window.labels.forEach((a, i) => {
+          if (a.left < 0 || a.right > width || a.top < 0 || a.bottom > height) over.push([a.text, "sticks out"]);
+          for (const b of window.labels.slice(i + 1)) if (a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom) over.push([a.text, b.text]);
+        });
+        return { over, causes: window.labels.filter((a) => a.isCause).length, all: window.labels.length };
+        """
+    )
 
 
 def drawn():
@@ -191,6 +226,8 @@ try:
     until("causes of the requests above", lambda: "not_taken" in text("#causes"))
     time.sleep(1)
     browser.save_screenshot(f"{folder}/narrow.png")
+    found = labels()
+    assert found["causes"] == 2 and found["all"] > 6 and not found["over"], found
     one("[data-tab=margin]").click()
     # Of this page's colours, and large enough to be read; nothing is cut off or lies on another text.
     look = {}
@@ -205,6 +242,24 @@ try:
         raise AssertionError(look) from None
     browser.execute_script("document.getElementById('more').scrollIntoView()")
     browser.save_screenshot(f"{folder}/margin-narrow.png")
+    # A channel that is unplugged says so, and still shows the last position that it had.
+    one('[data-tab="rehearsal"]').click()
+    fault = Select(one('#inject select[name="fault"]'))
+    channel = one('#inject input[name="channel"]')
+    channel.clear()
+    channel.send_keys("1")
+    fault.select_by_visible_text("unplug")
+    one("#inject button").click()
+    until("the fault", lambda: text("#inject-done") != "")
+    second = lambda css: browser.find_elements(By.CSS_SELECTOR, ".channel " + css)[1].text
+    until("held, and why", lambda: second(".pill").startswith("held: "))
+    time.sleep(1)
+    held = second(".value")
+    assert held.endswith("deg") and float(held.split()[0]) >= 0, held
+    time.sleep(1)
+    assert second(".value") == held and second(".pill").startswith("held: "), (second(".value"), second(".pill"))
+    until("the other one is good", lambda: browser.find_elements(By.CSS_SELECTOR, ".channel .pill")[0].text == "good")
+    browser.save_screenshot(f"{folder}/held.png")
     wide = browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
     assert wide <= 0, f"{wide} pixels stick out"
     wrong = [e for e in browser.get_log("browser") if e["level"] == "SEVERE"]

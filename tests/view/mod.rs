@@ -547,13 +547,13 @@ fn a_browser_shows_the_page_and_obeys_its_keys() {
         return;
     }
     let dir = tools::folder("view");
-    let config = dir.join("card.toml");
     let text = endat_gen::config::preset(SERVICE).unwrap();
     let (before, line) = text.split_once("\n[line]").unwrap();
     let line = line.replacen("parts = []", "parts = [\"alignment\", \"margin\"]", 1);
-    fs::write(&config, format!("{before}\n[line]{line}")).unwrap();
-    let port = format!("virtual:{}", config.display());
-    let view = View::new("view-browser", &port, &["--listen", "0.0.0.0:0"]);
+    let project = parse("card.toml", &format!("{before}\n[line]{line}")).unwrap();
+    let card = Served::new(project, || Door::tcp("127.0.0.1:0").unwrap());
+    let more = ["--listen", "0.0.0.0:0", "--rehearse"];
+    let view = View::new("view-browser", &card.name, &more);
     let url = format!("http://{}/?token={}", view.address, view.token());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/view/browser.py");
     let output = Command::new("python3")
