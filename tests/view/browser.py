@@ -227,7 +227,7 @@ try:
     time.sleep(1)
     browser.save_screenshot(f"{folder}/narrow.png")
     found = labels()
-    assert found["causes"] == 2 and found["all"] > 6 and not found["over"], found
+    assert found["causes"] == 2 and found["all"] >= 6 and not found["over"], found
     one("[data-tab=margin]").click()
     # Of this page's colours, and large enough to be read; nothing is cut off or lies on another text.
     look = {}
