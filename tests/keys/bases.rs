@@ -26,8 +26,8 @@ pub const BASES: [&str; 8] = [
     "name = \"receiver\"\n[host]\nbus = \"dsp\"\n[[channel]]\nprotocol = \"t_format\"\nencoder = \"one\"\nbit_hz = 2_500_000\n\
      request = 6\nreply_gap_us = 30\nfield_gap_us = 3\nfilter_cycles = 2\n[device]\ninitial_values = false\n",
     // A board with few pins.
-    "name = \"few_pins\"\n[clock]\nsystem_hz = 24_000_000\n[endat]\nclock_hz = 3_000_000\n[[channel]]\nposition_bits = 25\n\
-     command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"spi\"\n[board]\nname = \"icebreaker\"\n",
+    "name = \"few_pins\"\n[clock]\nsystem_hz = 30_000_000\n[endat]\nclock_hz = 3_000_000\n[[channel]]\nposition_bits = 25\n\
+     command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"spi\"\n[board]\nname = \"icebreaker\"\n[pins]\n",
     "name = \"least\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
      command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"axi_lite\"\n[service]\n[line]\n[outputs]\n[safety]\n[stream]\n",
 ];
