@@ -58,15 +58,45 @@ fn unnumbered(path: &Path) -> Option<(PathBuf, u32)> {
     Some((plain, number))
 }
 
-/// The highest number that is there; 0 if there is none.
-pub fn highest(path: &Path) -> u32 {
+/// The numbers that are there behind a name, in no order.
+fn numbers(path: &Path) -> impl Iterator<Item = u32> + use<'_> {
     let name = |path: &Path| Some(path.file_name()?.to_string_lossy().into_owned());
     let entries = fs::read_dir(folder(path)).into_iter().flatten().flatten();
-    let numbers = entries.filter_map(|entry| {
+    entries.filter_map(move |entry| {
         let (plain, number) = unnumbered(&entry.path())?;
         (name(&plain) == name(path)).then_some(number)
-    });
-    numbers.max().unwrap_or(0)
+    })
+}
+
+/// The highest number that is there; 0 if there is none.
+pub fn highest(path: &Path) -> u32 {
+    numbers(path).max().unwrap_or(0)
+}
+
+/// The numbered files that are there behind one without a number, in their order.
+pub fn behind(path: &Path) -> Vec<PathBuf> {
+    let mut found: Vec<u32> = match unnumbered(path) {
+        Some(_) => Vec::new(),
+        None => numbers(path).collect(),
+    };
+    found.sort_unstable();
+    found.into_iter().map(|n| numbered(path, n)).collect()
+}
+
+/// Files of one name in the order of their numbers, first the one without a number; names in the order in which they were given.
+pub fn in_order(files: &[PathBuf]) -> Vec<PathBuf> {
+    let part = |file: &PathBuf| unnumbered(file).unwrap_or_else(|| (file.clone(), 0));
+    let parts: Vec<(PathBuf, u32)> = files.iter().map(part).collect();
+    let place = |index: &usize| {
+        let (name, number) = &parts[*index];
+        (parts.iter().position(|(other, _)| other == name), *number)
+    };
+    let mut order: Vec<usize> = (0..files.len()).collect();
+    order.sort_by_key(place);
+    order
+        .into_iter()
+        .map(|index| files[index].clone())
+        .collect()
 }
 
 /// Whether a file is the one of the next number behind another one of the same recording.

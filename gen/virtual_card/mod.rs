@@ -412,3 +412,22 @@ impl Transport for VirtualCard {
         Ok(count)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches a wait by the clock on the wall: beside other work the simulation is slow, and answers would come too late.
+    #[test]
+    fn a_wait_at_a_virtual_card_is_simulated_time() {
+        let mut card = virtual_card_at("virtual:demo").unwrap().unwrap();
+        let before = card.elapsed();
+        assert_eq!(
+            card.receive(&mut [0], Duration::from_millis(10)).unwrap(),
+            0
+        );
+        let waited_us = (card.elapsed() - before).as_micros() as u64;
+        // It looks every few cycles.
+        assert!((10_000..10_100).contains(&waited_us), "{waited_us} us");
+    }
+}

@@ -207,6 +207,19 @@ fn without_initial_values(parts: &str) -> Vec<Artifact> {
     card
 }
 
+/// Catches a card for Synplify, which ignores them, that has start values in a memory; and a page that no longer says so.
+#[test]
+fn what_synplify_ignores_is_in_no_card_without_initial_values() {
+    let page = include_str!("../../docs/boards.md");
+    let said = page.lines().find(|l| l.starts_with("**Synplify**"));
+    assert!(said.is_some_and(|l| l.contains("`[device] initial_values = false` avoids that")));
+    without_initial_values(ASKED);
+    // The same card with start values has them where Synplify reads none.
+    let text = crate::bus_card::text(HostBus::Wishbone, "");
+    let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+    assert!(card.iter().any(|file| file.text.contains("initial ")));
+}
+
 /// Catches what only start values bring to life, and a bench that does not see it.
 #[test]
 #[ignore = "slow: bench without start values, and its mutations"]

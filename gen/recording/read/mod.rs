@@ -8,7 +8,7 @@ mod turns;
 pub use order::Misfits;
 
 use super::count::Judge;
-use super::files::is_next;
+use super::files::{behind, in_order, is_next};
 use super::layout::DerivedColumn;
 use super::picture::{Measurement, Seen};
 use crate::error::GenError;
@@ -430,6 +430,17 @@ pub struct Found {
     pub misfits: Misfits,
 }
 
+/// The files behind a Parquet file without a number that the same recording filled when the one before was full.
+fn rest_of(file: &Path) -> Vec<PathBuf> {
+    let Some(start) = parquet::start_time(file).filter(Value::is_string) else {
+        return Vec::new();
+    };
+    let behind = behind(file).into_iter();
+    behind
+        .filter(|file| parquet::start_time(file).as_ref() == Some(&start))
+        .collect()
+}
+
 /// Reads all files; nothing is no recording. `is_sparse`: rows were left out on purpose, whatever the files say.
 pub fn read_all(files: &[PathBuf], is_sparse: bool, take: Rows<'_>) -> Result<Found, GenError> {
     read_as(files, is_sparse, Ranges::default(), take)
@@ -447,8 +458,22 @@ pub fn read_as(
         said,
         ..Reader::default()
     };
-    let mut rows = 0u64;
+    let mut all = files.to_vec();
     for file in files {
+        let rest = rest_of(file).into_iter();
+        let rest: Vec<PathBuf> = rest.filter(|file| !files.contains(file)).collect();
+        if let Some(last) = rest.last() {
+            reader.notes.push(format!(
+                "{}: goes on in {} more, to {}: read, too",
+                file.display(),
+                rest.len(),
+                last.display()
+            ));
+        }
+        all.extend(rest);
+    }
+    let mut rows = 0u64;
+    for file in &in_order(&all) {
         reader.rows(file, &mut |head, row| {
             rows += 1;
             take(head, row);

@@ -11,6 +11,7 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::fs::File;
+use std::path::Path;
 use std::sync::mpsc::{sync_channel, Receiver, SyncSender};
 use std::thread;
 
@@ -200,6 +201,19 @@ fn long(values: &mut Values, row: usize) -> Result<Option<u64>, Wrong> {
     }
 }
 
+/// What a file says that it is of.
+fn about(file: &SerializedFileReader<File>) -> Option<Value> {
+    let said = file.metadata().file_metadata().key_value_metadata()?;
+    let said = said.iter().filter(|kv| kv.key == KEY);
+    serde_json::from_str(said.filter_map(|kv| kv.value.as_deref()).next()?).ok()
+}
+
+/// When the recording of a file was begun; none if it is no such file.
+pub fn start_time(path: &Path) -> Option<Value> {
+    let file = SerializedFileReader::new(File::open(path).ok()?).ok()?;
+    Some(about(&file)?["start_time"].take())
+}
+
 /// Reads a file; what it says before its rows.
 pub(super) fn read(mut file: File, take: Take<'_>) -> Result<Head, Wrong> {
     let state = seal::state(&mut file);
@@ -222,12 +236,7 @@ pub(super) fn read(mut file: File, take: Take<'_>) -> Result<Head, Wrong> {
         }
     }
     let reader = SerializedFileReader::new(file).map_err(broken)?;
-    let meta = reader.metadata().file_metadata();
-    let said = meta.key_value_metadata().into_iter().flatten();
-    let said = said
-        .filter(|kv| kv.key == KEY)
-        .find_map(|kv| kv.value.as_deref());
-    let about: Option<Value> = said.and_then(|text| serde_json::from_str(text).ok());
+    let about = about(&reader);
     let mut head = Head {
         about: about.ok_or_else(|| foreign("is no recording of `log`"))?,
         ..Head::default()
@@ -237,7 +246,12 @@ pub(super) fn read(mut file: File, take: Take<'_>) -> Result<Head, Wrong> {
     head.units = units.collect();
     let system_hz = head.about["system_hz"].as_f64().filter(|hz| *hz > 0.0);
     let system_hz = system_hz.ok_or_else(|| foreign("is no recording: it has no system_hz"))?;
-    let columns = meta.schema_descr().columns().iter();
+    let columns = reader
+        .metadata()
+        .file_metadata()
+        .schema_descr()
+        .columns()
+        .iter();
     let names: Vec<String> = columns.map(|c| c.name().to_owned()).collect();
     let columns = Columns::of(&names, &mut head)?;
     let (give, batches) = sync_channel(BATCHES);

@@ -412,6 +412,38 @@ fn fifteen_bits_too_few_and_a_low_line_pass_the_crc_and_fail_at_the_tail() {
     assert!(passed > 0, "none passed the CRC: the tail was not tried");
 }
 
+/// Catches a frame whose LOW tail hides what else is wrong with it.
+#[test]
+fn a_low_tail_tells_a_wrong_crc_and_f1_of_the_frame_too() {
+    let setup = Setup::card();
+    let behind = setup.answer_bits();
+    for is_wrong in [false, true] {
+        for has_alarm in [false, true] {
+            let mut setup = setup.clone().defect(
+                1,
+                Defect::StuckFrom {
+                    bit: behind,
+                    level: false,
+                },
+            );
+            let mut flags = TAIL_NOT_HIGH;
+            if is_wrong {
+                setup = setup.defect(1, Defect::CrcXor(5));
+                flags |= flag(cause::CRC) | PARALLEL_CRC;
+            }
+            if has_alarm {
+                setup = setup.defect(1, Defect::ErrorBits { f1: true, f2: true });
+                flags |= flag(cause::F1);
+            }
+            let s = story(&setup);
+            assert_eq!(
+                (s.faulty.cause, s.faulty.flags),
+                (cause::DATA_NOT_FALLING, flags)
+            );
+        }
+    }
+}
+
 #[test]
 fn an_answer_without_f2_is_refused() {
     for seed in 0..16 {

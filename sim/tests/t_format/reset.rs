@@ -1,4 +1,4 @@
-//! A reset in the middle of an exchange: the next request waits until the encoder has certainly said all.
+//! A reset in the middle of an exchange: the next request waits until the encoder has certainly said all, and no wrong position is shown.
 
 use super::rig::Rig;
 use endat_sim::rng::Rng;
@@ -9,6 +9,9 @@ use endat_sim::US;
 const REPLY_GAP_US: u64 = 20;
 /// The line is at rest after power-up.
 const READY_US: u64 = 75;
+/// What the encoder has to say.
+const SINGLE_TURN: u32 = 0x65_4321;
+const MULTI_TURN: u32 = 0xFE_DCBA;
 /// Request 3, with its pause and its reply.
 const EXCHANGE_US: u64 = 48 + REPLY_GAP_US;
 
@@ -22,12 +25,14 @@ fn is_collision(violation: &Violation) -> bool {
 
 fn requests_wait_after_a_reset(moments: u64) {
     let mut rng = Rng::new(47);
-    let (mut refused, mut collisions) = (0, vec![]);
+    let (mut refused, mut collisions, mut wrong) = (0, vec![], vec![]);
     for moment in 0..moments {
         let gap_us = rng.in_range(1, REPLY_GAP_US - 1);
         let config = EncoderConfig {
             reply_gap: gap_us * US,
             status: 0,
+            single_turn: SINGLE_TURN,
+            multi_turn: MULTI_TURN,
             ..EncoderConfig::default()
         };
         let mut rig = Rig::new(20, config);
@@ -47,6 +52,10 @@ fn requests_wait_after_a_reset(moments: u64) {
             rig.write(0, 3);
             let map = rig.finish();
             refused += u64::from(map.cause == 2);
+            let shown = (map.single_turn, map.multi_turn);
+            if map.fresh && shown != (SINGLE_TURN, MULTI_TURN) {
+                wrong.push((cycle, gap_us, shown));
+            }
         }
         let seen = rig.encoder.violations().iter().any(is_collision);
         if seen {
@@ -55,9 +64,10 @@ fn requests_wait_after_a_reset(moments: u64) {
         rig.wait_us(READY_US);
         assert!(rig.exchange(3).fresh, "{moment}");
     }
-    assert!(refused > 2 * moments, "{refused}");
     let count = collisions.len();
+    assert_eq!(wrong, [], "of {moments}");
     assert!(count == 0, "{count} of {moments}: {collisions:?}");
+    assert!(refused > 2 * moments, "{refused}");
 }
 
 #[test]
@@ -66,7 +76,7 @@ fn request_is_not_driven_into_a_reply_after_a_reset() {
 }
 
 #[test]
-#[ignore = "slow: a reset at 3000 moments of an exchange"]
+#[ignore = "slow: a reset at 10 000 moments of an exchange"]
 fn request_is_not_driven_into_a_reply_after_a_reset_at_any_moment() {
-    requests_wait_after_a_reset(3_000);
+    requests_wait_after_a_reset(10_000);
 }

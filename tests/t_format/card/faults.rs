@@ -3,7 +3,7 @@
 use super::*;
 use endat_hdl::protocols::t_format::cause;
 use endat_hdl::regs::Protocol;
-use endat_sim::t_format::Defect;
+use endat_sim::t_format::{Defect, Violation};
 
 #[test]
 fn every_cause_of_an_encoder_is_told_by_its_code() {
@@ -56,6 +56,39 @@ fn every_cause_of_an_encoder_is_told_by_its_code() {
         assert!(endat.cause == 0 && endat.fresh, "{defect:?}: {endat:?}");
     }
     rig.check_encoders();
+}
+
+/// A controller that asks again and again after a reset in the middle of an exchange.
+#[test]
+fn card_shows_no_wrong_t_format_position_after_a_reset() {
+    for moment in 0..20 {
+        let mut rig = Rig::new(false, "\"register\"");
+        rig.trigger();
+        rig.us(4 * moment);
+        rig.master.bench.reset();
+        for _ in 0..12 {
+            rig.us(5 + moment % 3);
+            rig.trigger();
+            let seen = rig.result(1);
+            assert!(
+                !seen.fresh || Some(seen.position) == rig.replied(),
+                "{moment}: {seen:?}"
+            );
+        }
+        let is_collision = |v: &Violation| {
+            matches!(
+                v,
+                Violation::Conflict | Violation::Impatient | Violation::TooEarly
+            )
+        };
+        let violations = rig.master.bench.t_format(0).encoder().violations();
+        assert!(!violations.iter().any(is_collision), "{violations:?}");
+        rig.us(200);
+        rig.trigger();
+        rig.us(200);
+        let good = rig.result(1);
+        assert!(good.fresh && Some(good.position) == rig.replied());
+    }
 }
 
 #[test]
