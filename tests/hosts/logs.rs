@@ -157,8 +157,9 @@ fn what_cannot_be_logged_is_told_at_once() {
     assert_eq!(outcome.messages, [told]);
 }
 
-/// Catches a run whose drawing is lost with its card.
+/// Catches a run whose drawing is lost with its card. The host waits 20 s for it.
 #[test]
+#[ignore = "slow: a log that nobody answers any more"]
 fn a_card_that_dies_leaves_file_and_plot() {
     let folder = tools::folder("host_card_dies");
     let (svg, out) = (folder.join("dies.svg"), folder.join("dies.csv"));
