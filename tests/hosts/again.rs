@@ -229,6 +229,7 @@ impl Transport for Dead {
 /// was heard again while it was asked, before it has answered.
 #[cfg(unix)]
 #[test]
+#[ignore = "slow: a line that is dead for 65 536 triggers"]
 fn what_a_card_counted_on_a_dead_line_is_missing_to_the_last_one() {
     let (_ended, line) = Asleep::begun();
     let times = Rc::new(Cell::new([Instant::now(); 2]));
