@@ -8,6 +8,7 @@
 //!
 //! The properties of a part of a card are proved together: each may lean on the others in the cycles before.
 
+mod cover;
 pub mod frames;
 mod fronts;
 mod harness;
@@ -18,6 +19,7 @@ pub mod reset;
 mod tools;
 mod trace;
 
+pub use cover::Met;
 pub use fronts::claimed;
 pub use page::page;
 pub use report::{ModuleRow, PartReport, Report, Row, Verdict};
@@ -253,6 +255,10 @@ fn prove_part(
             )?;
         }
         report.rows.append(&mut rows);
+    }
+    // A part that does not hold is not asked what its conditions are worth.
+    if !report.rows.iter().any(|row| row.verdict.is_failure()) {
+        cover::look(folder.path(), subject, &blocks, &mut report.rows)?;
     }
     if let Some(claim) = claim {
         let started = Instant::now();

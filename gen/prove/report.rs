@@ -1,5 +1,6 @@
 //! What has been proved, as text and data.
 
+use super::cover::{self, Met};
 use super::tools::Answer;
 use super::{property_of, Block};
 use rtl_design::elaborate::properties::Begins;
@@ -23,12 +24,14 @@ pub enum Verdict {
     Undecided,
     /// It says nothing of this block: the words say why.
     NotClaimed,
+    /// It holds, and its condition is never met: it says nothing.
+    Empty,
 }
 
 impl Verdict {
     /// Whether this is the property that does not hold.
     pub fn is_failure(&self) -> bool {
-        matches!(self, Self::Violated { .. } | Self::NotProved)
+        matches!(self, Self::Violated { .. } | Self::NotProved | Self::Empty)
     }
 }
 
@@ -54,6 +57,7 @@ impl fmt::Display for Verdict {
             Self::NotProved => f.pad("NOT PROVED"),
             Self::Undecided => f.pad("undecided"),
             Self::NotClaimed => f.pad("no claim"),
+            Self::Empty => f.pad("EMPTY"),
         }
     }
 }
@@ -73,6 +77,9 @@ pub struct Row {
     pub assertions: usize,
     /// Whether it holds.
     pub verdict: Verdict,
+    /// How its condition is met; none where nobody looked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub met: Option<Met>,
     /// File with the counterexample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trace: Option<String>,
@@ -163,6 +170,7 @@ pub(super) fn rows(blocks: &[Block], begins: Begins, answer: &Answer) -> Vec<Row
                 from_any_state: begins == Begins::Anywhere,
                 assertions: property.assertions,
                 verdict,
+                met: None,
                 trace: None,
             });
         }
@@ -189,10 +197,18 @@ impl fmt::Display for Report {
                 writeln!(f, "\n  From {from}: {count} {noun}, {seconds:.1} s")?;
                 for row in rows {
                     writeln!(f, "    {:<22} {:<10}  {}", row.name, row.verdict, row.words)?;
+                    if row.verdict == Verdict::Empty {
+                        writeln!(f, "    {:<22} no run of {} cycles meets its condition, and no state that the proofs allow", "", cover::CYCLES)?;
+                    }
                     if let Some(trace) = &row.trace {
                         writeln!(f, "    {:<22} counterexample: {trace}", "")?;
                     }
                 }
+            }
+            let count = |met: Met| part.rows.iter().filter(|r| r.met == Some(met)).count();
+            let (run, state) = (count(Met::Run), count(Met::State));
+            if run + state > 0 {
+                writeln!(f, "\n  Conditions: {run} met by runs of {} cycles, {state} by states that the proofs allow", cover::CYCLES)?;
             }
             writeln!(f)?;
         }

@@ -38,6 +38,7 @@ pub(super) fn row(folder: &Path, files: &[Artifact], module: &Module) -> Result<
             true => Verdict::Proved,
             false => Verdict::Violated { after_cycles: 1 },
         },
+        met: None,
         trace: None,
     })
 }

@@ -72,6 +72,57 @@ pub(super) fn model(
     Err(not_read(&text))
 }
 
+/// Makes the model of cover statements; the name of its file. Registers begin with anything if they are free; the modules `inside` say anything.
+pub(super) fn cover_model(
+    folder: &Path,
+    files: &[Artifact],
+    begins: Begins,
+    is_free: bool,
+    inside: &[&str],
+) -> Result<String, GenError> {
+    let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    let define = match begins {
+        Begins::AtStart => String::new(),
+        Begins::Anywhere => format!("-D{ANY_STATE}"),
+    };
+    let boxes: String = inside.iter().map(|m| format!("blackbox {m}; ")).collect();
+    let cut = match inside {
+        [] => "",
+        _ => "cutpoint -blackbox; ",
+    };
+    let free = match is_free {
+        true => "setattr -unset init w:*; ",
+        false => "",
+    };
+    let file = "cover.smt2";
+    let script = format!(
+        "read_verilog -formal -sv -DFORMAL {define} {}; {boxes}hierarchy -top {TOP}; {cut}prep -top {TOP} -flatten -nordff; {free}\
+         async2sync; dffunmap; chformal -lower; opt_clean; write_smt2 -wires {file}",
+        names.join(" ")
+    );
+    match run(YOSYS, folder, &["-q", "-p", &script])? {
+        (true, _) => Ok(file.into()),
+        (false, text) => Err(not_read(&text)),
+    }
+}
+
+/// Paths of the cover statements of a model that runs of these steps reach.
+pub(super) fn reached(folder: &Path, model: &str, steps: &str) -> Result<Vec<String>, GenError> {
+    let arguments = ["-s", SOLVER, "--noprogress", "-c", "-t", steps, model];
+    let (_, text) = run(SMTBMC, folder, &arguments)?;
+    if !text.contains("Status: ") {
+        return Err(GenError::input(format!(
+            "{SMTBMC}: gave no answer: {}; {INSTALL}",
+            crate::error::shorten(text.trim())
+        )));
+    }
+    let lines = text
+        .lines()
+        .filter(|l| l.contains("Reached cover statement in step "));
+    let path = |line: &str| Some(line.split_once(": ")?.1.split(' ').next()?.to_owned());
+    Ok(lines.filter_map(path).collect())
+}
+
 pub(super) fn not_read(text: &str) -> GenError {
     GenError::input(format!(
         "{YOSYS}: cannot read the Verilog: {}; is it as it was emitted, with its properties?",

@@ -9,7 +9,7 @@ use crate::strangers::on_both_cores;
 use crate::tools;
 use crate::verilog::mutations::Mutation;
 use endat_gen::config::{load_any_preset, parse, Configuration, PRESETS, RECEIVER_PRESETS};
-use endat_gen::prove::{claimed, prove, reset, Report, Subject, Verdict};
+use endat_gen::prove::{claimed, prove, reset, Met, Report, Subject, Verdict};
 use mutations::MUTATIONS;
 use rtl_design::elaborate::properties::{properties, Begins};
 use rtl_design::elaborate::Design;
@@ -201,6 +201,23 @@ fn a_broken_block_breaks_its_property() {
         let mutations: Vec<_> = MUTATIONS.iter().collect();
         refuse(&cards(), &mutations);
     }
+}
+
+/// Catches a condition that nobody looks at, and one that is taken for never met.
+#[test]
+fn conditions_of_properties_are_met() {
+    if !tools::require_all(&TOOLS, "conditions of properties") {
+        return;
+    }
+    let mut card = subject(FULL);
+    let module = format!("{}_channel_registers", card.name);
+    card.narrow(&module);
+    let report = proved(&card);
+    assert!(report.is_good(), "{report}");
+    let rows = report.parts.iter().flat_map(|p| &p.rows);
+    let met: Vec<_> = rows.map(|row| (row.name.as_str(), row.met)).collect();
+    assert!(!met.is_empty());
+    assert!(met.iter().all(|(_, met)| *met == Some(Met::Run)), "{met:?}");
 }
 
 fn file_of(card: &Subject, block: &str) -> Option<usize> {

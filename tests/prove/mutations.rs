@@ -70,6 +70,8 @@ pub const MUTATIONS: &[(Mutation, &str)] = &[
     (mutation("lost and not told", "verdict", "lost_now <= lost;", "lost_now <= 1'b0;"), "one_result_per_trigger"),
     (mutation("a trigger that meets a frame forgotten", "transaction", "assign lost = trigger & ", "assign lost = trigger & idle & "), "one_result_per_trigger"),
     (mutation("a word written half way", "uart_bridge", "access_next_next = last_lane;", "access_next_next = byte_lane[1];"), "write_is_whole"),
+    // Nothing is wrong with what is never done.
+    (mutation("no word is ever written", "uart_bridge", "access_next_next = last_lane;", "access_next_next = 1'b0;"), "write_is_whole"),
     (mutation("a word of a command that timed out", "uart_bridge", "access_next_next = 1'b0;\n            state_next", "state_next"), "read_is_whole"),
     (mutation("an address beyond the map", "uart_bridge", "out_of_range_next = out_of_range | high_bits;", "out_of_range_next = high_bits;"), "first_word_as_sent"),
     (mutation("bytes of a word the wrong way round", "uart_bridge", "data_next = {data[23:0], next_byte};", "data_next = {8'd0, data[31:8]} | {24'd0, next_byte};"), "first_word_as_sent"),

@@ -3,6 +3,7 @@
 //! These proofs use registers of the blocks inside a module, so yosys flattens the module first. Each text begins with the promises;
 //! from [`INSIDE`] on it has the invariants between front, word and bank that the induction needs.
 
+use super::cover::{self, Met};
 use super::report::{Row, Verdict};
 use super::tools::{self, Answer};
 use crate::artifact::Artifact;
@@ -135,16 +136,46 @@ impl Claim {
             of_label(&known, label).unwrap_or(known.len() - 1)
         };
         let failed: Vec<usize> = answer.failed.iter().map(place).collect();
+        let met = match failed.is_empty() {
+            true => self.met(design, files, top, folder)?,
+            false => vec![],
+        };
+        let is_met = |property: &Property| met.iter().any(|label| *label == property.name);
         let rows = known.iter().enumerate().map(|(n, property)| Row {
             module: module.name.clone(),
             name: property.name.clone(),
             words: property.words.clone(),
             from_any_state: false,
             assertions: property.assertions,
-            verdict: Verdict::of(&answer, failed.contains(&n)),
+            verdict: match Verdict::of(&answer, failed.contains(&n)) {
+                Verdict::Proved if !is_met(property) && property.name != INSIDE_NAME => {
+                    Verdict::Empty
+                }
+                verdict => verdict,
+            },
+            met: is_met(property).then_some(Met::Run),
             trace: None,
         });
         Ok(rows.collect())
+    }
+
+    /// Labels of the assertions whose condition a run of a master meets.
+    fn met(
+        &self,
+        design: &Design,
+        files: &[Artifact],
+        top: usize,
+        folder: &Path,
+    ) -> Result<Vec<String>, GenError> {
+        let module = &design.modules[top];
+        let files: Vec<_> = files.iter().map(|f| f.path.as_str()).collect();
+        let starts = start_values(design, top);
+        let flat = tools::flat(folder, &files, &module.name, "", &starts)?;
+        let claims = cover::covers(&self.text(module));
+        let model = tools::claims(folder, &flat, &module.name, &claims)?;
+        let paths = tools::reached(folder, &model, &format!("0:{}", cover::CYCLES))?;
+        let label = |path: &String| path.rsplit('.').next().map(str::to_owned);
+        Ok(paths.iter().filter_map(label).collect())
     }
 
     /// Asks the solver about these files; `first` is what yosys does before it reads them. A run that breaks a promise is looked for where the induction finds none that begins at the start values.

@@ -1,0 +1,209 @@
+//! Whether the condition of a property is ever met: one that no run meets is true of any block, and says nothing.
+//!
+//! Each assertion becomes a cover statement of its condition: of what stands before it in `if`, and of the negated terms that it begins with,
+//! `assert (!a | !b | c)`. What it asserts is granted, and so is anything that the blocks inside a module may say.
+
+use super::harness;
+use super::report::{Row, Verdict};
+use super::{tools, Block, Subject};
+use crate::artifact::Artifact;
+use crate::error::GenError;
+use rtl_design::elaborate::properties::{Begins, Property};
+use serde::Serialize;
+use std::path::Path;
+
+/// Cycles of a run from the start values.
+pub(super) const CYCLES: usize = 40;
+
+/// How the condition of a property is met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Met {
+    /// By a run from the start values.
+    Run,
+    /// In a state that the proofs allow; it takes longer runs.
+    State,
+    /// Never.
+    Never,
+}
+
+/// Says of each proved property of these blocks how its condition is met.
+pub(super) fn look(
+    folder: &Path,
+    subject: &Subject,
+    blocks: &[Block],
+    rows: &mut [Row],
+) -> Result<(), GenError> {
+    for block in blocks {
+        let name = &block.module.name;
+        let found = met(folder, subject, block)?;
+        for (property, met) in block.properties.iter().zip(found) {
+            let mut rows = rows.iter_mut();
+            let row = rows.find(|row| (&row.module, &row.name) == (name, &property.name));
+            let Some(row) = row.filter(|row| row.verdict == Verdict::Proved) else {
+                continue;
+            };
+            row.met = Some(met);
+            if met == Met::Never {
+                row.verdict = Verdict::Empty;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How each property of a module is met, by the module with all its inputs free.
+fn met(folder: &Path, subject: &Subject, block: &Block) -> Result<Vec<Met>, GenError> {
+    let (design, module) = (&subject.design, block.module);
+    let properties = &block.properties;
+    let inside = module.instances.iter().map(|i| i.module);
+    let inside: Vec<&str> = inside
+        .map(|index| design.modules[index].name.as_str())
+        .collect();
+    let mut files: Vec<Artifact> = subject
+        .files
+        .iter()
+        .map(|file| Artifact::new(file.path.clone(), covers(&file.text)))
+        .collect();
+    files.push(harness::artifact(module, design.has_initial_values));
+    crate::artifact::write(folder, &files, crate::scratch::REMEDY)?;
+    let first = usize::from(!design.has_initial_values);
+    let mut found = vec![Met::Never; properties.len()];
+    let runs = [
+        (Begins::AtStart, false, CYCLES, Met::Run),
+        (Begins::AtStart, true, 2, Met::State),
+        (Begins::Anywhere, true, super::ANYWHERE_CYCLES, Met::Run),
+    ];
+    for (begins, is_free, cycles, how) in runs {
+        let is_open = |(n, p): (usize, &Property)| p.begins == begins && found[n] == Met::Never;
+        if !properties.iter().enumerate().any(is_open) {
+            continue;
+        }
+        let model = tools::cover_model(folder, &files, begins, is_free, &inside)?;
+        let steps = format!("{first}:{}", first + cycles);
+        for label in tools::reached(folder, &model, &steps)? {
+            if let Some(n) = own(properties, &label) {
+                if properties[n].begins == begins {
+                    found[n] = found[n].min(how);
+                }
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// The property whose own assertion has this path; others take it, and need not be met.
+fn own(properties: &[Property], path: &str) -> Option<usize> {
+    let label = path.rsplit('.').next();
+    properties
+        .iter()
+        .position(|p| Some(p.name.as_str()) == label)
+}
+
+/// A text with each assertion granted, and a cover statement of its condition in its place.
+pub(super) fn covers(text: &str) -> String {
+    let mut done = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find("assert (") {
+        let begin = label_begin(&rest[..at]);
+        let body = at + "assert (".len();
+        let end = body + closing(&rest[body..]);
+        let (label, said) = (&rest[begin..at], &rest[body..end]);
+        done.push_str(&rest[..begin]);
+        done.push_str(&format!(
+            "begin assume ({said}); {label}cover ({}); end",
+            condition(said)
+        ));
+        // Behind `);`.
+        rest = rest[end..].trim_start_matches(')').trim_start_matches(';');
+    }
+    done + rest
+}
+
+/// Where the label of the assertion behind this text begins.
+fn label_begin(before: &str) -> usize {
+    let head = before.trim_end();
+    let macro_begin = head.strip_suffix(')').and_then(|h| h.rfind('`'));
+    let name = head.trim_end_matches(':');
+    let name_begin = name.rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+    macro_begin.unwrap_or(name_begin.map_or(0, |n| n + 1))
+}
+
+/// Where the parenthesis closes that is open before this text.
+fn closing(text: &str) -> usize {
+    let mut depth = 1;
+    let place = text.char_indices().find(|(_, c)| {
+        depth += match c {
+            '(' => 1,
+            ')' => -1,
+            _ => 0,
+        };
+        depth == 0
+    });
+    place.map_or(text.len(), |(at, _)| at)
+}
+
+/// What the terms that an assertion begins with except, all of it; it is always met if there are none.
+fn condition(said: &str) -> String {
+    let terms = terms(said);
+    let excepted = terms.iter().take_while(|term| term.starts_with('!'));
+    // The last term is what is claimed.
+    let excepted = excepted.take(terms.len() - 1);
+    let met: Vec<String> = excepted.map(|term| format!("!({term})")).collect();
+    match met.is_empty() {
+        true => "1'b1".into(),
+        false => met.join(" & "),
+    }
+}
+
+/// The terms of `a | b | c`, or `a || b`.
+fn terms(said: &str) -> Vec<&str> {
+    let (mut depth, mut begin, mut found) = (0, 0, vec![]);
+    let bytes = said.as_bytes();
+    for (at, byte) in bytes.iter().enumerate() {
+        match byte {
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth -= 1,
+            // A choice binds less.
+            b'?' if depth == 0 => return vec![said.trim()],
+            b'|' if depth == 0 && said[at..].starts_with("| ") => {
+                found.push(said[begin..at].trim_end_matches('|').trim());
+                begin = at + 1;
+            }
+            _ => {}
+        }
+    }
+    found.push(said[begin..].trim());
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_condition_is_what_an_assertion_excepts() {
+        for (said, met) in [
+            ("a", "1'b1"),
+            ("!a", "1'b1"),
+            ("!a | b", "!(!a)"),
+            ("!a || b && |c", "!(!a)"),
+            ("!a | !b", "!(!a)"),
+            ("!(a | b) | !c[2:0] | (d | e)", "!(!(a | b)) & !(!c[2:0])"),
+            ("!a & b | c", "!(!a & b)"),
+            ("a | !b", "1'b1"),
+            ("!a ? b : c | d", "1'b1"),
+        ] {
+            assert_eq!(condition(said), met, "{said}");
+        }
+    }
+
+    #[test]
+    fn an_assertion_is_granted_and_its_condition_covered() {
+        let text = "if (x) `FORMAL_LABEL(a) assert (!y | f(z));\nelse b: assert (\n w);\n";
+        assert_eq!(
+            covers(text),
+            "if (x) begin assume (!y | f(z)); `FORMAL_LABEL(a) cover (!(!y)); end\nelse begin assume (\n w); b: cover (1'b1); end\n"
+        );
+    }
+}
