@@ -4,28 +4,12 @@
 //! `assert (!a | !b | c)`. What it asserts is granted, and so is anything that the blocks inside a module may say.
 
 use super::harness;
-use super::report::{Row, Verdict};
+use super::report::{Met, Row, Verdict, RUN_CYCLES};
 use super::{tools, Block, Subject};
 use crate::artifact::Artifact;
 use crate::error::GenError;
 use rtl_design::elaborate::properties::{Begins, Property};
-use serde::Serialize;
 use std::path::Path;
-
-/// Cycles of a run from the start values.
-pub(super) const CYCLES: usize = 40;
-
-/// How the condition of a property is met.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Met {
-    /// By a run from the start values.
-    Run,
-    /// In a state that the proofs allow; it takes longer runs.
-    State,
-    /// Never.
-    Never,
-}
 
 /// Says of each proved property of these blocks how its condition is met.
 pub(super) fn look(
@@ -70,7 +54,7 @@ fn met(folder: &Path, subject: &Subject, block: &Block) -> Result<Vec<Met>, GenE
     let first = usize::from(!design.has_initial_values);
     let mut found = vec![Met::Never; properties.len()];
     let runs = [
-        (Begins::AtStart, false, CYCLES, Met::Run),
+        (Begins::AtStart, false, RUN_CYCLES, Met::Run),
         (Begins::AtStart, true, 2, Met::State),
         (Begins::Anywhere, true, super::ANYWHERE_CYCLES, Met::Run),
     ];

@@ -19,10 +19,9 @@ pub mod reset;
 mod tools;
 mod trace;
 
-pub use cover::Met;
 pub use fronts::claimed;
 pub use page::page;
-pub use report::{ModuleRow, PartReport, Report, Row, Verdict};
+pub use report::{Met, ModuleRow, PartReport, Report, Row, Verdict};
 pub(crate) use tools::YOSYS;
 pub use trace::Trace;
 

@@ -1,6 +1,5 @@
 //! What has been proved, as text and data.
 
-use super::cover::{self, Met};
 use super::tools::Answer;
 use super::{property_of, Block};
 use rtl_design::elaborate::properties::Begins;
@@ -60,6 +59,21 @@ impl fmt::Display for Verdict {
             Self::Empty => f.pad("EMPTY"),
         }
     }
+}
+
+/// Cycles of a run from the start values that is to meet a condition.
+pub(super) const RUN_CYCLES: usize = 40;
+
+/// How the condition of a property is met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Met {
+    /// By a run from the start values.
+    Run,
+    /// In a state that the proofs allow; it takes longer runs.
+    State,
+    /// Never.
+    Never,
 }
 
 /// A property of a block.
@@ -198,7 +212,7 @@ impl fmt::Display for Report {
                 for row in rows {
                     writeln!(f, "    {:<22} {:<10}  {}", row.name, row.verdict, row.words)?;
                     if row.verdict == Verdict::Empty {
-                        writeln!(f, "    {:<22} no run of {} cycles meets its condition, and no state that the proofs allow", "", cover::CYCLES)?;
+                        writeln!(f, "    {:<22} no run of {} cycles meets its condition, and no state that the proofs allow", "", RUN_CYCLES)?;
                     }
                     if let Some(trace) = &row.trace {
                         writeln!(f, "    {:<22} counterexample: {trace}", "")?;
@@ -208,7 +222,7 @@ impl fmt::Display for Report {
             let count = |met: Met| part.rows.iter().filter(|r| r.met == Some(met)).count();
             let (run, state) = (count(Met::Run), count(Met::State));
             if run + state > 0 {
-                writeln!(f, "\n  Conditions: {run} met by runs of {} cycles, {state} by states that the proofs allow", cover::CYCLES)?;
+                writeln!(f, "\n  Conditions: {run} met by runs of {} cycles, {state} by states that the proofs allow", RUN_CYCLES)?;
             }
             writeln!(f)?;
         }

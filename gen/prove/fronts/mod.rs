@@ -3,8 +3,8 @@
 //! These proofs use registers of the blocks inside a module, so yosys flattens the module first. Each text begins with the promises;
 //! from [`INSIDE`] on it has the invariants between front, word and bank that the induction needs.
 
-use super::cover::{self, Met};
-use super::report::{Row, Verdict};
+use super::cover;
+use super::report::{Met, Row, Verdict, RUN_CYCLES};
 use super::tools::{self, Answer};
 use crate::artifact::Artifact;
 use crate::error::GenError;
@@ -173,7 +173,7 @@ impl Claim {
         let flat = tools::flat(folder, &files, &module.name, "", &starts)?;
         let claims = cover::covers(&self.text(module));
         let model = tools::claims(folder, &flat, &module.name, &claims)?;
-        let paths = tools::reached(folder, &model, &format!("0:{}", cover::CYCLES))?;
+        let paths = tools::reached(folder, &model, &format!("0:{}", RUN_CYCLES))?;
         let label = |path: &String| path.rsplit('.').next().map(str::to_owned);
         Ok(paths.iter().filter_map(label).collect())
     }
