@@ -140,7 +140,7 @@ impl Claim {
             true => self.met(design, files, top, folder)?,
             false => vec![],
         };
-        let is_met = |property: &Property| met.iter().any(|label| *label == property.name);
+        let is_met = |property: &Property| met.contains(&property.name);
         let rows = known.iter().enumerate().map(|(n, property)| Row {
             module: module.name.clone(),
             name: property.name.clone(),
