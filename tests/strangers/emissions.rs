@@ -218,7 +218,7 @@ fn every_preset_runs_in_a_language() {
 #[test]
 #[ignore = "slow: benches of every bus, in both languages in turn"]
 fn every_bus_runs_in_a_language() {
-    let (buses, parts) = others();
+    let [buses, parts] = others();
     assert!(buses.len() > 8 && parts.len() > 8);
     runs(&buses);
 }
@@ -226,15 +226,15 @@ fn every_bus_runs_in_a_language() {
 #[test]
 #[ignore = "slow: benches of every part and protocol, in both languages in turn"]
 fn every_part_runs_in_a_language() {
-    runs(&others().1);
+    runs(&others()[1]);
 }
 
 /// The emissions that are no presets: buses first, then parts and protocols.
-fn others() -> (Vec<(String, String)>, Vec<(String, String)>) {
+fn others() -> [Vec<(String, String)>; 2] {
     let mut buses = presets(false);
     let first = buses.iter().position(|(name, _)| name == "requests");
     let parts = buses.split_off(first.unwrap());
-    (buses, parts)
+    [buses, parts]
 }
 
 /// The emissions without long benches: presets or others.
