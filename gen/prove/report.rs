@@ -219,10 +219,21 @@ impl fmt::Display for Report {
                     }
                 }
             }
-            let count = |met: Met| part.rows.iter().filter(|r| r.met == Some(met)).count();
-            let (run, state) = (count(Met::Run), count(Met::State));
-            if run + state > 0 {
-                writeln!(f, "\n  Conditions: {run} met by runs of {} cycles, {state} by states that the proofs allow", RUN_CYCLES)?;
+            let met = |met: Met| part.rows.iter().filter(move |r| r.met == Some(met));
+            let run = met(Met::Run).count();
+            let states: Vec<&str> = met(Met::State).map(|r| r.name.as_str()).collect();
+            if run + states.len() > 0 {
+                writeln!(
+                    f,
+                    "\n  Conditions: {run} met by runs of {RUN_CYCLES} cycles"
+                )?;
+            }
+            if !states.is_empty() {
+                writeln!(
+                    f,
+                    "              met in a state that the proofs allow, which no run may reach: {}",
+                    states.join(", ")
+                )?;
             }
             writeln!(f)?;
         }

@@ -430,15 +430,13 @@ pub struct Found {
     pub misfits: Misfits,
 }
 
-/// The files behind a Parquet file without a number that the same recording filled when the one before was full.
-fn rest_of(file: &Path) -> Vec<PathBuf> {
+/// The files behind a Parquet file without a number: those that the same recording filled when the one before was full, and others.
+fn rest_of(file: &Path) -> (Vec<PathBuf>, Vec<PathBuf>) {
     let Some(start) = parquet::start_time(file).filter(Value::is_string) else {
-        return Vec::new();
+        return Default::default();
     };
     let behind = behind(file).into_iter();
-    behind
-        .filter(|file| parquet::start_time(file).as_ref() == Some(&start))
-        .collect()
+    behind.partition(|file| parquet::start_time(file).as_ref() == Some(&start))
 }
 
 /// Reads all files; nothing is no recording. `is_sparse`: rows were left out on purpose, whatever the files say.
@@ -460,8 +458,15 @@ pub fn read_as(
     };
     let mut all = files.to_vec();
     for file in files {
-        let rest = rest_of(file).into_iter();
-        let rest: Vec<PathBuf> = rest.filter(|file| !files.contains(file)).collect();
+        let (mut rest, others) = rest_of(file);
+        rest.retain(|file| !files.contains(file));
+        for other in others.iter().filter(|file| !files.contains(file)) {
+            reader.notes.push(format!(
+                "{}: is cut off, or of another recording than {}: left out; give it by itself to see which",
+                other.display(),
+                file.display()
+            ));
+        }
         if let Some(last) = rest.last() {
             reader.notes.push(format!(
                 "{}: goes on in {} more, to {}: read, too",

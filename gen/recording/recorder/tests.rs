@@ -179,9 +179,10 @@ fn behind_a_file_with_all_its_groups_another_one_begins() {
         assert_eq!((all.rows, all.missing), (rows, 0), "{given:?}");
     }
     let notes = read_all(&names[..1], false, &mut |_, _| {}).unwrap().notes;
+    assert!(notes[0].contains("long-0004.parquet: is cut off, or of another"));
     assert!(
-        notes[0].contains("goes on in 1 more")
-            && notes[0].ends_with("long-0005.parquet: read, too"),
+        notes[1].contains("goes on in 1 more")
+            && notes[1].ends_with("long-0005.parquet: read, too"),
         "{notes:?}"
     );
     assert_eq!(stats(&names[1..]).rows, 10);
