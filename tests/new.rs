@@ -295,6 +295,28 @@ fn remedies(told: &str) -> Vec<(&str, Vec<&str>)> {
         .collect()
 }
 
+/// Catches a key that a remedy names and `new` asks of another protocol only.
+#[test]
+fn recovery_time_is_taken_for_endat_too() {
+    let fast = [
+        "new",
+        "-",
+        "--yes",
+        "--sample-hz",
+        "20000",
+        "--position-bits",
+        "48",
+    ];
+    let told = bad(&fast, 2);
+    assert!(told.contains("--recovery-max-ns"), "{told}");
+    let text = good(&[&fast[..], &["--recovery-max-ns", "10500"]].concat());
+    assert!(
+        text.contains("\nrecovery_max_ns = 10500\n")
+            || text.contains("\nrecovery_max_ns = 10_500\n"),
+        "{text}"
+    );
+}
+
 /// Catches a board that the help offers and the command refuses, and a remedy that it refuses again.
 #[test]
 fn board_goes_with_every_bus_or_the_error_names_what_goes() {

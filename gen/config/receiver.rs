@@ -113,7 +113,7 @@ fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
     let protocol = table.string(&PROTOCOL);
     table.require_as(&PROTOCOL, "\"t_format\"");
     if let Some(protocol) = protocol.filter(|p| p.value != Protocol::TFormat.row().word) {
-        let text = "the bus \"dsp\" is that of a T-format receiver; use \"t_format\", or another host.bus for EnDat";
+        let text = "the bus \"dsp\" is that of a T-format receiver; use protocol \"t_format\", or another bus for other protocols";
         let shown = format!("{:?}", protocol.value);
         table.complain(protocol.line, PROTOCOL.name, &shown, text);
     }

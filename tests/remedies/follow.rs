@@ -476,7 +476,7 @@ impl Message<'_> {
             "choose another bus"
             | "choose another host.bus"
             | "another host.bus"
-            | "another host.bus for EnDat" => {
+            | "another bus for other protocols" => {
                 let buses = ["uart", "apb", "spi", "parallel", "none"].map(|b| format!("{b:?}"));
                 return one("choose another bus", self.try_all("host.bus", buses));
             }

@@ -30,7 +30,9 @@ pub fn complete(given: &Answers) -> Result<Answers, Wrong> {
         let mut all = Answers::new();
         let mut left: Vec<&Question> = Vec::new();
         for question in QUESTIONS {
-            if !(question.is_asked)(&all) {
+            // Some keys are asked about one protocol, and taken for others.
+            let is_taken = given.contains_key(question.name) && question.fits(&all);
+            if !(question.is_asked)(&all) && !is_taken {
                 continue;
             }
             let usual = (question.usual)(&all);

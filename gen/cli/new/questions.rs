@@ -362,6 +362,14 @@ pub static QUESTIONS: &[Question] = &[
 ];
 
 impl Question {
+    /// Whether encoders of the protocol that was answered have this key of theirs.
+    pub fn fits(&self, answers: &Answers) -> bool {
+        match self.of {
+            Of::Key(key, table) => table == keys::COMMON && is_of_form(key, answers),
+            Of::Channels => false,
+        }
+    }
+
     /// Whether no answer is one: the key is left out.
     pub fn may_be_empty(&self) -> bool {
         (self.usual)(&Answers::new()).contains(&String::new())
