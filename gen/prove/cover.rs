@@ -11,6 +11,9 @@ use crate::error::GenError;
 use rtl_design::elaborate::properties::{Begins, Property};
 use std::path::Path;
 
+/// Cycles that a state has behind it.
+const SETTLED: usize = 8;
+
 /// Says of each proved property of these blocks how its condition is met.
 pub(super) fn look(
     folder: &Path,
@@ -54,17 +57,23 @@ fn met(folder: &Path, subject: &Subject, block: &Block) -> Result<Vec<Met>, GenE
     let first = usize::from(!design.has_initial_values);
     let mut found = vec![Met::Never; properties.len()];
     let runs = [
-        (Begins::AtStart, false, RUN_CYCLES, Met::Run),
-        (Begins::AtStart, true, 2, Met::State),
-        (Begins::Anywhere, true, super::ANYWHERE_CYCLES, Met::Run),
+        (Begins::AtStart, false, first..first + RUN_CYCLES, Met::Run),
+        // What no cycle before can have left has gone by then.
+        (Begins::AtStart, true, SETTLED..SETTLED + 2, Met::State),
+        (
+            Begins::Anywhere,
+            true,
+            first..first + super::ANYWHERE_CYCLES,
+            Met::Run,
+        ),
     ];
-    for (begins, is_free, cycles, how) in runs {
+    for (begins, is_free, steps, how) in runs {
         let is_open = |(n, p): (usize, &Property)| p.begins == begins && found[n] == Met::Never;
         if !properties.iter().enumerate().any(is_open) {
             continue;
         }
         let model = tools::cover_model(folder, &files, begins, is_free, &inside)?;
-        let steps = format!("{first}:{}", first + cycles);
+        let steps = format!("{}:{}", steps.start, steps.end);
         for label in tools::reached(folder, &model, &steps)? {
             if let Some(n) = own(properties, &label) {
                 if properties[n].begins == begins {

@@ -23,7 +23,7 @@ state* means: whatever the registers hold, for instance after an upset. The prop
 
 The front of AXI4-Lite, APB, Wishbone or AHB-Lite is proved for every master within the rules of its bus, with a bank that answers each access within four cycles; `holds_inside` is what the induction needs of the blocks inside it.
 
-A property whose condition is never met says nothing: *EMPTY*, and the exit code is 1. The condition is what stands before an assertion, `if (a)` or `!a |`. The command looks for a run of 40 cycles that meets it, in the module by itself, with anything from the blocks inside; for what takes longer, a byte of a UART for instance, for a state that the proofs allow, with anything in what was a cycle before. It names these: whether a run reaches such a state is not shown. `--json` has `met`: `run` or `state`.
+A property whose condition is never met says nothing: *EMPTY*, and the exit code is 1. The condition is what stands before an assertion, `if (a)` or `!a |`. The command looks for a run of 40 cycles that meets it, in the module by itself, with anything from the blocks inside; for what takes longer, a byte of a UART for instance, for a state that the proofs allow eight cycles long. It names these: whether a run reaches such a state is not shown. `--json` has `met`: `run` or `state`.
 
 The last table of the command has every module of your card, with its properties or with *none*.
 
