@@ -83,20 +83,16 @@ pub fn behind(path: &Path) -> Vec<PathBuf> {
     found.into_iter().map(|n| numbered(path, n)).collect()
 }
 
-/// Files of one name in the order of their numbers, first the one without a number; names in the order in which they were given.
+/// Sorts files of one name by their numbers; the file without a number is the first. Names keep the order in which they were given.
 pub fn in_order(files: &[PathBuf]) -> Vec<PathBuf> {
     let part = |file: &PathBuf| unnumbered(file).unwrap_or_else(|| (file.clone(), 0));
-    let parts: Vec<(PathBuf, u32)> = files.iter().map(part).collect();
-    let place = |index: &usize| {
-        let (name, number) = &parts[*index];
-        (parts.iter().position(|(other, _)| other == name), *number)
-    };
-    let mut order: Vec<usize> = (0..files.len()).collect();
-    order.sort_by_key(place);
+    let names: Vec<PathBuf> = files.iter().map(|file| part(file).0).collect();
+    let mut order = files.to_vec();
+    order.sort_by_cached_key(|file| {
+        let (name, number) = part(file);
+        (names.iter().position(|other| *other == name), number)
+    });
     order
-        .into_iter()
-        .map(|index| files[index].clone())
-        .collect()
 }
 
 /// Whether a file is the one of the next number behind another one of the same recording.

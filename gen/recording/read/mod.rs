@@ -2,13 +2,14 @@
 
 mod order;
 mod parquet;
+mod parts;
 mod text;
 mod turns;
 
 pub use order::Misfits;
 
 use super::count::Judge;
-use super::files::{behind, in_order, is_next};
+use super::files::is_next;
 use super::layout::DerivedColumn;
 use super::picture::{Measurement, Seen};
 use crate::error::GenError;
@@ -430,15 +431,6 @@ pub struct Found {
     pub misfits: Misfits,
 }
 
-/// The files behind a Parquet file without a number: those that the same recording filled when the one before was full, and others.
-fn rest_of(file: &Path) -> (Vec<PathBuf>, Vec<PathBuf>) {
-    let Some(start) = parquet::start_time(file).filter(Value::is_string) else {
-        return Default::default();
-    };
-    let behind = behind(file).into_iter();
-    behind.partition(|file| parquet::start_time(file).as_ref() == Some(&start))
-}
-
 /// Reads all files; nothing is no recording. `is_sparse`: rows were left out on purpose, whatever the files say.
 pub fn read_all(files: &[PathBuf], is_sparse: bool, take: Rows<'_>) -> Result<Found, GenError> {
     read_as(files, is_sparse, Ranges::default(), take)
@@ -456,29 +448,9 @@ pub fn read_as(
         said,
         ..Reader::default()
     };
-    let mut all = files.to_vec();
-    for file in files {
-        let (mut rest, others) = rest_of(file);
-        rest.retain(|file| !files.contains(file));
-        for other in others.iter().filter(|file| !files.contains(file)) {
-            reader.notes.push(format!(
-                "{}: is cut off, or of another recording than {}: left out; give it by itself to see which",
-                other.display(),
-                file.display()
-            ));
-        }
-        if let Some(last) = rest.last() {
-            reader.notes.push(format!(
-                "{}: goes on in {} more, to {}: read, too",
-                file.display(),
-                rest.len(),
-                last.display()
-            ));
-        }
-        all.extend(rest);
-    }
+    let all = parts::all(files, &mut reader.notes);
     let mut rows = 0u64;
-    for file in &in_order(&all) {
+    for file in &all {
         reader.rows(file, &mut |head, row| {
             rows += 1;
             take(head, row);

@@ -201,17 +201,16 @@ fn long(values: &mut Values, row: usize) -> Result<Option<u64>, Wrong> {
     }
 }
 
-/// What a file says that it is of.
+/// The description of its recording that a file carries.
 fn about(file: &SerializedFileReader<File>) -> Option<Value> {
     let said = file.metadata().file_metadata().key_value_metadata()?;
     let said = said.iter().filter(|kv| kv.key == KEY);
     serde_json::from_str(said.filter_map(|kv| kv.value.as_deref()).next()?).ok()
 }
 
-/// When the recording of a file was begun; none if it is no such file.
-pub fn start_time(path: &Path) -> Option<Value> {
-    let file = SerializedFileReader::new(File::open(path).ok()?).ok()?;
-    Some(about(&file)?["start_time"].take())
+/// The same of a file by its name; none if it is no such file.
+pub(super) fn about_of(path: &Path) -> Option<Value> {
+    about(&SerializedFileReader::new(File::open(path).ok()?).ok()?)
 }
 
 /// Reads a file; what it says before its rows.
@@ -236,9 +235,8 @@ pub(super) fn read(mut file: File, take: Take<'_>) -> Result<Head, Wrong> {
         }
     }
     let reader = SerializedFileReader::new(file).map_err(broken)?;
-    let about = about(&reader);
     let mut head = Head {
-        about: about.ok_or_else(|| foreign("is no recording of `log`"))?,
+        about: about(&reader).ok_or_else(|| foreign("is no recording of `log`"))?,
         ..Head::default()
     };
     let units = head.about["channels"].as_array().into_iter().flatten();
@@ -246,12 +244,8 @@ pub(super) fn read(mut file: File, take: Take<'_>) -> Result<Head, Wrong> {
     head.units = units.collect();
     let system_hz = head.about["system_hz"].as_f64().filter(|hz| *hz > 0.0);
     let system_hz = system_hz.ok_or_else(|| foreign("is no recording: it has no system_hz"))?;
-    let columns = reader
-        .metadata()
-        .file_metadata()
-        .schema_descr()
-        .columns()
-        .iter();
+    let meta = reader.metadata().file_metadata();
+    let columns = meta.schema_descr().columns().iter();
     let names: Vec<String> = columns.map(|c| c.name().to_owned()).collect();
     let columns = Columns::of(&names, &mut head)?;
     let (give, batches) = sync_channel(BATCHES);
