@@ -8,22 +8,26 @@ use super::report::{Met, Row, Verdict, RUN_CYCLES};
 use super::{tools, Block, Subject};
 use crate::artifact::Artifact;
 use crate::error::GenError;
+use crate::scratch;
 use rtl_design::elaborate::properties::{Begins, Property};
+use rtl_design::elaborate::Design;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Cycles that a state has behind it.
 const SETTLED: usize = 8;
 
 /// Says of each proved property of these blocks how its condition is met.
-pub(super) fn look(
-    folder: &Path,
-    subject: &Subject,
-    blocks: &[Block],
-    rows: &mut [Row],
-) -> Result<(), GenError> {
+pub(super) fn look(subject: &Subject, blocks: &[Block], rows: &mut [Row]) -> Result<(), GenError> {
+    let folder = scratch::folder()?;
+    let files = subject.files.iter();
+    let files: Vec<Artifact> = files
+        .map(|file| Artifact::new(file.path.clone(), covers(&file.text)))
+        .collect();
+    crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
     for block in blocks {
         let name = &block.module.name;
-        let found = met(folder, subject, block)?;
+        let found = met(folder.path(), &subject.design, block)?;
         for (property, met) in block.properties.iter().zip(found) {
             let mut rows = rows.iter_mut();
             let row = rows.find(|row| (&row.module, &row.name) == (name, &property.name));
@@ -39,26 +43,23 @@ pub(super) fn look(
     Ok(())
 }
 
-/// How each property of a module is met, by the module with all its inputs free.
-fn met(folder: &Path, subject: &Subject, block: &Block) -> Result<Vec<Met>, GenError> {
-    let (design, module) = (&subject.design, block.module);
-    let properties = &block.properties;
-    let inside = module.instances.iter().map(|i| i.module);
-    let inside: Vec<&str> = inside
-        .map(|index| design.modules[index].name.as_str())
-        .collect();
-    let mut files: Vec<Artifact> = subject
-        .files
-        .iter()
-        .map(|file| Artifact::new(file.path.clone(), covers(&file.text)))
-        .collect();
-    files.push(harness::artifact(module, design.has_initial_values));
-    crate::artifact::write(folder, &files, crate::scratch::REMEDY)?;
+/// How each property of a module is met, by the module with all its inputs free; the card with cover statements is in the folder.
+fn met(folder: &Path, design: &Design, block: &Block) -> Result<Vec<Met>, GenError> {
+    let (module, properties) = (block.module, &block.properties);
+    let inside = module.instances.iter().map(|i| &design.modules[i.module]);
+    let inside: BTreeSet<&str> = inside.map(|m| m.name.as_str()).collect();
+    let inside: Vec<&str> = inside.into_iter().collect();
+    let harness = harness::artifact(module, design.has_initial_values);
+    crate::artifact::write(folder, std::slice::from_ref(&harness), scratch::REMEDY)?;
+    let read = inside.iter().copied().chain([module.name.as_str()]);
+    let mut files: Vec<String> = read.map(rtl_design::verilog::file_name).collect();
+    files.push(harness.path);
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let first = usize::from(!design.has_initial_values);
     let mut found = vec![Met::Never; properties.len()];
     let runs = [
         (Begins::AtStart, false, first..first + RUN_CYCLES, Met::Run),
-        // What no cycle before can have left has gone by then.
+        // By then the registers have lost what only a false start can have left.
         (Begins::AtStart, true, SETTLED..SETTLED + 2, Met::State),
         (
             Begins::Anywhere,
@@ -107,13 +108,13 @@ pub(super) fn covers(text: &str) -> String {
             "begin assume ({said}); {label}cover ({}); end",
             condition(said)
         ));
-        // Behind `);`.
-        rest = rest[end..].trim_start_matches(')').trim_start_matches(';');
+        rest = &rest[end..];
+        rest = rest.strip_prefix(");").unwrap_or(rest);
     }
     done + rest
 }
 
-/// Where the label of the assertion behind this text begins.
+/// The place of the label at the end of this text; the assertion comes next.
 fn label_begin(before: &str) -> usize {
     let head = before.trim_end();
     let macro_begin = head.strip_suffix(')').and_then(|h| h.rfind('`'));
@@ -122,7 +123,7 @@ fn label_begin(before: &str) -> usize {
     macro_begin.unwrap_or(name_begin.map_or(0, |n| n + 1))
 }
 
-/// Where the parenthesis closes that is open before this text.
+/// The place of the parenthesis that closes the one before this text.
 fn closing(text: &str) -> usize {
     let mut depth = 1;
     let place = text.char_indices().find(|(_, c)| {
@@ -136,7 +137,7 @@ fn closing(text: &str) -> usize {
     place.map_or(text.len(), |(at, _)| at)
 }
 
-/// What the terms that an assertion begins with except, all of it; it is always met if there are none.
+/// The condition under which an assertion claims something. An assertion begins with negated terms that name it, or is always claimed.
 fn condition(said: &str) -> String {
     let terms = terms(said);
     let excepted = terms.iter().take_while(|term| term.starts_with('!'));

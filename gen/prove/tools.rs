@@ -51,54 +51,51 @@ pub(super) fn model(
     first: &str,
 ) -> Result<String, GenError> {
     let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
-    let (define, free, file) = match begins {
-        Begins::AtStart => (String::new(), "", "start.smt2"),
-        // Registers have no start value any more, but the one that tells whether there was a cycle before.
-        Begins::Anywhere => (
-            format!("-D{ANY_STATE} "),
-            "setattr -unset init w:* w:*f_past_valid %d; ",
-            "anywhere.smt2",
-        ),
+    let (is_free, file) = match begins {
+        Begins::AtStart => (false, "start.smt2"),
+        Begins::Anywhere => (true, "anywhere.smt2"),
     };
-    let script = format!(
-        "{first}read_verilog -formal -sv -DFORMAL {define}{}; prep -top {TOP} -flatten -nordff; {free}async2sync; dffunmap; \
-         chformal -lower; opt_clean; write_smt2 -wires {file}",
-        names.join(" ")
-    );
-    let (is_good, text) = run(YOSYS, folder, &["-q", "-p", &script])?;
-    if is_good {
-        return Ok(file.into());
-    }
-    Err(not_read(&text))
+    smt2(folder, &names, begins, is_free, first, "", file)
 }
 
 /// Makes the model of cover statements; the name of its file. Registers begin with anything if they are free; the modules `inside` say anything.
 pub(super) fn cover_model(
     folder: &Path,
-    files: &[Artifact],
+    files: &[&str],
     begins: Begins,
     is_free: bool,
     inside: &[&str],
 ) -> Result<String, GenError> {
-    let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    let mut cut: String = inside.iter().map(|m| format!("blackbox {m}; ")).collect();
+    if !inside.is_empty() {
+        cut += &format!("hierarchy -top {TOP}; cutpoint -blackbox; ");
+    }
+    smt2(folder, files, begins, is_free, "", &cut, "cover.smt2")
+}
+
+/// Makes a model of the properties that begin so; `first` and `then` are what yosys does before and after it reads the files.
+fn smt2(
+    folder: &Path,
+    files: &[&str],
+    begins: Begins,
+    is_free: bool,
+    first: &str,
+    then: &str,
+    file: &str,
+) -> Result<String, GenError> {
     let define = match begins {
         Begins::AtStart => String::new(),
-        Begins::Anywhere => format!("-D{ANY_STATE}"),
+        Begins::Anywhere => format!("-D{ANY_STATE} "),
     };
-    let boxes: String = inside.iter().map(|m| format!("blackbox {m}; ")).collect();
-    let cut = match inside {
-        [] => "",
-        _ => "cutpoint -blackbox; ",
-    };
+    // Registers have no start value any more, but the one that tells whether there was a cycle before.
     let free = match is_free {
-        true => "setattr -unset init w:*; ",
+        true => "setattr -unset init w:* w:*f_past_valid %d; ",
         false => "",
     };
-    let file = "cover.smt2";
     let script = format!(
-        "read_verilog -formal -sv -DFORMAL {define} {}; {boxes}hierarchy -top {TOP}; {cut}prep -top {TOP} -flatten -nordff; {free}\
-         async2sync; dffunmap; chformal -lower; opt_clean; write_smt2 -wires {file}",
-        names.join(" ")
+        "{first}read_verilog -formal -sv -DFORMAL {define}{}; {then}prep -top {TOP} -flatten -nordff; {free}async2sync; dffunmap; \
+         chformal -lower; opt_clean; write_smt2 -wires {file}",
+        files.join(" ")
     );
     match run(YOSYS, folder, &["-q", "-p", &script])? {
         (true, _) => Ok(file.into()),
@@ -111,10 +108,7 @@ pub(super) fn reached(folder: &Path, model: &str, steps: &str) -> Result<Vec<Str
     let arguments = ["-s", SOLVER, "--noprogress", "-c", "-t", steps, model];
     let (_, text) = run(SMTBMC, folder, &arguments)?;
     if !text.contains("Status: ") {
-        return Err(GenError::input(format!(
-            "{SMTBMC}: gave no answer: {}; {INSTALL}",
-            crate::error::shorten(text.trim())
-        )));
+        return Err(no_answer(&text));
     }
     let lines = text
         .lines()
@@ -185,11 +179,15 @@ pub(super) fn solve(folder: &Path, model: &str, options: &[&str]) -> Result<Answ
     match (is_good, says("Status: PASSED"), says("Status: FAILED")) {
         (true, true, false) => Ok(Answer::default()),
         (false, false, true) => Ok(counterexample(folder, &text)),
-        _ => Err(GenError::input(format!(
-            "{SMTBMC}: gave no answer: {}; {INSTALL}",
-            crate::error::shorten(text.trim())
-        ))),
+        _ => Err(no_answer(&text)),
     }
+}
+
+fn no_answer(text: &str) -> GenError {
+    GenError::input(format!(
+        "{SMTBMC}: gave no answer: {}; {INSTALL}",
+        crate::error::shorten(text.trim())
+    ))
 }
 
 fn counterexample(folder: &Path, text: &str) -> Answer {
