@@ -359,7 +359,8 @@ pub(crate) fn refutes(
         }
         if let Some(claim) = fronts::claim_of(&design.modules[part]) {
             files.retain(|file| file.path != harness.path);
-            let answer = claim.ask(design, &files, part, folder.path(), first)?;
+            let flat = fronts::flat(design, &files, part, folder.path(), first)?;
+            let answer = claim.ask(&design.modules[part], folder.path(), &flat)?;
             if !answer.failed.is_empty() {
                 return Ok(Some(true));
             }

@@ -129,7 +129,8 @@ impl Claim {
         folder: &Path,
     ) -> Result<Vec<Row>, GenError> {
         let module = &design.modules[top];
-        let answer = self.ask(design, files, top, folder, "")?;
+        let flat = flat(design, files, top, folder, "")?;
+        let answer = self.ask(module, folder, &flat)?;
         let known = self.properties();
         let place = |path: &String| {
             let label = path.rsplit('.').next().unwrap_or(path);
@@ -137,7 +138,7 @@ impl Claim {
         };
         let failed: Vec<usize> = answer.failed.iter().map(place).collect();
         let met = match failed.is_empty() {
-            true => self.met(design, files, top, folder)?,
+            true => self.met(module, folder, &flat)?,
             false => vec![],
         };
         let is_met = |property: &Property| met.contains(&property.name);
@@ -159,38 +160,17 @@ impl Claim {
         Ok(rows.collect())
     }
 
-    /// Labels of the assertions whose condition a run of a master meets.
-    fn met(
-        &self,
-        design: &Design,
-        files: &[Artifact],
-        top: usize,
-        folder: &Path,
-    ) -> Result<Vec<String>, GenError> {
-        let module = &design.modules[top];
-        let files: Vec<_> = files.iter().map(|f| f.path.as_str()).collect();
-        let starts = start_values(design, top);
-        let flat = tools::flat(folder, &files, &module.name, "", &starts)?;
+    /// Labels of the assertions whose condition a run of a master meets, in the module as one text.
+    fn met(&self, module: &Module, folder: &Path, flat: &str) -> Result<Vec<String>, GenError> {
         let claims = cover::covers(&self.text(module));
-        let model = tools::claims(folder, &flat, &module.name, &claims)?;
-        let paths = tools::reached(folder, &model, &format!("0:{}", RUN_CYCLES))?;
+        let model = tools::claims(folder, flat, &module.name, &claims)?;
+        let paths = tools::reached(folder, &model, &format!("0:{RUN_CYCLES}"))?;
         let label = |path: &String| path.rsplit('.').next().map(str::to_owned);
         Ok(paths.iter().filter_map(label).collect())
     }
 
-    /// Asks the solver about these files; `first` is what yosys does before it reads them. A run that breaks a promise is looked for where the induction finds none that begins at the start values.
-    pub fn ask(
-        &self,
-        design: &Design,
-        files: &[Artifact],
-        top: usize,
-        folder: &Path,
-        first: &str,
-    ) -> Result<Answer, GenError> {
-        let module = &design.modules[top];
-        let files: Vec<_> = files.iter().map(|f| f.path.as_str()).collect();
-        let starts = start_values(design, top);
-        let flat = tools::flat(folder, &files, &module.name, first, &starts)?;
+    /// Asks the solver about the module as one text. A run that breaks a promise is looked for where the induction finds none that begins at the start values.
+    pub fn ask(&self, module: &Module, folder: &Path, flat: &str) -> Result<Answer, GenError> {
         let text = self.text(module);
         let (promises, _) = text.split_once(INSIDE).unwrap_or((&text, ""));
         let is_wait = |line: &str| {
@@ -207,7 +187,7 @@ impl Claim {
             runs.push((others_granted, WAIT_DEPTH));
         }
         for (claims, depth) in runs {
-            let model = tools::claims(folder, &flat, &module.name, &claims)?;
+            let model = tools::claims(folder, flat, &module.name, &claims)?;
             let depth = depth.to_string();
             let step = tools::solve(folder, &model, &["-i", "-t", &depth])?;
             let base = match step.failed.is_empty() {
@@ -217,7 +197,7 @@ impl Claim {
             if base.failed.is_empty() {
                 continue;
             }
-            let model = tools::claims(folder, &flat, &module.name, promises)?;
+            let model = tools::claims(folder, flat, &module.name, promises)?;
             let depth = SEARCH_CYCLES.to_string();
             let found = tools::solve(folder, &model, &["-t", &depth])?;
             return Ok(match found.failed.is_empty() {
@@ -230,6 +210,25 @@ impl Claim {
         }
         Ok(Answer::default())
     }
+}
+
+/// A module of these files with all that it holds, as one text; `first` is what yosys does before it reads them.
+pub(super) fn flat(
+    design: &Design,
+    files: &[Artifact],
+    top: usize,
+    folder: &Path,
+    first: &str,
+) -> Result<String, GenError> {
+    let module = &design.modules[top];
+    let files: Vec<_> = files.iter().map(|f| f.path.as_str()).collect();
+    tools::flat(
+        folder,
+        &files,
+        &module.name,
+        first,
+        &start_values(design, top),
+    )
 }
 
 fn lines(text: &str, change: impl Fn(&str) -> Option<String>) -> String {
