@@ -29,6 +29,13 @@ pub enum Violation {
     TooEarly,
 }
 
+impl Violation {
+    /// True if the receiver drove into a reply, or too soon after it.
+    pub fn is_collision(&self) -> bool {
+        matches!(self, Self::Conflict | Self::Impatient | Self::TooEarly)
+    }
+}
+
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -15,14 +15,6 @@ const MULTI_TURN: u32 = 0xFE_DCBA;
 /// Request 3, with its pause and its reply.
 const EXCHANGE_US: u64 = 48 + REPLY_GAP_US;
 
-/// What the driver did to a reply, or too soon after it; a request that the reset has cut is no fault of the next one.
-fn is_collision(violation: &Violation) -> bool {
-    matches!(
-        violation,
-        Violation::Conflict | Violation::Impatient | Violation::TooEarly
-    )
-}
-
 fn requests_wait_after_a_reset(moments: u64) {
     let mut rng = Rng::new(47);
     let (mut refused, mut collisions, mut wrong) = (0, vec![], vec![]);
@@ -57,7 +49,8 @@ fn requests_wait_after_a_reset(moments: u64) {
                 wrong.push((cycle, gap_us, shown));
             }
         }
-        let seen = rig.encoder.violations().iter().any(is_collision);
+        // A request that the reset has cut is no fault of the next one.
+        let seen = rig.encoder.violations().iter().any(Violation::is_collision);
         if seen {
             collisions.push((cycle, gap_us));
         }

@@ -75,14 +75,11 @@ fn card_shows_no_wrong_t_format_position_after_a_reset() {
                 "{moment}: {seen:?}"
             );
         }
-        let is_collision = |v: &Violation| {
-            matches!(
-                v,
-                Violation::Conflict | Violation::Impatient | Violation::TooEarly
-            )
-        };
         let violations = rig.master.bench.t_format(0).encoder().violations();
-        assert!(!violations.iter().any(is_collision), "{violations:?}");
+        assert!(
+            !violations.iter().any(Violation::is_collision),
+            "{violations:?}"
+        );
         rig.us(200);
         rig.trigger();
         rig.us(200);
