@@ -1,7 +1,7 @@
-//! Whether the condition of a property is ever met: one that no run meets is true of any block, and says nothing.
+//! Looks whether a run meets the condition of each property. A property whose condition no run meets holds for every block, and says nothing.
 //!
-//! Each assertion becomes a cover statement of its condition: of what stands before it in `if`, and of the negated terms that it begins with,
-//! `assert (!a | !b | c)`. What it asserts is granted, and so is anything that the blocks inside a module may say.
+//! The condition of `if (a) assert (!b | c)` is `a & b`. A cover statement of it takes the place of the assertion; the assertion itself is
+//! assumed. Outputs of the blocks inside a module may be anything.
 
 use super::harness;
 use super::report::{Met, Row, Verdict, RUN_CYCLES};
@@ -14,10 +14,10 @@ use rtl_design::elaborate::Design;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Cycles that a state has behind it.
+/// Cycles that run before a state counts.
 const SETTLED: usize = 8;
 
-/// Says of each proved property of these blocks how its condition is met.
+/// Records for each proved property of these blocks how its condition is met.
 pub(super) fn look(subject: &Subject, blocks: &[Block], rows: &mut [Row]) -> Result<(), GenError> {
     let folder = scratch::folder()?;
     let files = subject.files.iter();
@@ -43,7 +43,7 @@ pub(super) fn look(subject: &Subject, blocks: &[Block], rows: &mut [Row]) -> Res
     Ok(())
 }
 
-/// How each property of a module is met, by the module with all its inputs free; the card with cover statements is in the folder.
+/// Finds how the condition of each property of a module is met, with all its inputs free. The folder holds the card with cover statements.
 fn met(folder: &Path, design: &Design, block: &Block) -> Result<Vec<Met>, GenError> {
     let (module, properties) = (block.module, &block.properties);
     let inside = module.instances.iter().map(|i| &design.modules[i.module]);
@@ -86,7 +86,7 @@ fn met(folder: &Path, design: &Design, block: &Block) -> Result<Vec<Met>, GenErr
     Ok(found)
 }
 
-/// The property whose own assertion has this path; others take it, and need not be met.
+/// Finds the property by the path of its own assertion. Conditions of its other assertions need not be met.
 fn own(properties: &[Property], path: &str) -> Option<usize> {
     let label = path.rsplit('.').next();
     properties
@@ -94,7 +94,7 @@ fn own(properties: &[Property], path: &str) -> Option<usize> {
         .position(|p| Some(p.name.as_str()) == label)
 }
 
-/// A text with each assertion granted, and a cover statement of its condition in its place.
+/// Replaces each assertion of a text by an assumption and a cover statement of its condition.
 pub(super) fn covers(text: &str) -> String {
     let mut done = String::new();
     let mut rest = text;

@@ -58,7 +58,7 @@ pub(super) fn model(
     smt2(folder, &names, begins, is_free, first, "", file)
 }
 
-/// Makes the model of cover statements; the name of its file. Registers begin with anything if they are free; the modules `inside` say anything.
+/// Makes the model of cover statements; the name of its file. Free registers begin with anything; outputs of the modules `inside` are anything.
 pub(super) fn cover_model(
     folder: &Path,
     files: &[&str],
@@ -73,7 +73,7 @@ pub(super) fn cover_model(
     smt2(folder, files, begins, is_free, "", &cut, "cover.smt2")
 }
 
-/// Makes a model of the properties that begin so; `first` and `then` are what yosys does before and after it reads the files.
+/// Makes a model of these files in `file`. yosys runs `first` before it reads them, and `then` after that.
 fn smt2(
     folder: &Path,
     files: &[&str],

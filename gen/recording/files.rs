@@ -58,7 +58,7 @@ fn unnumbered(path: &Path) -> Option<(PathBuf, u32)> {
     Some((plain, number))
 }
 
-/// The numbers that are there behind a name, in no order.
+/// Numbers of the files of this name in its folder, in no order.
 fn numbers(path: &Path) -> impl Iterator<Item = u32> + use<'_> {
     let name = |path: &Path| Some(path.file_name()?.to_string_lossy().into_owned());
     let entries = fs::read_dir(folder(path)).into_iter().flatten().flatten();
@@ -73,7 +73,7 @@ pub fn highest(path: &Path) -> u32 {
     numbers(path).max().unwrap_or(0)
 }
 
-/// The numbered files that are there behind one without a number, in their order.
+/// Finds the numbered files of a name that has no number itself, in the order of their numbers.
 pub fn behind(path: &Path) -> Vec<PathBuf> {
     let mut found: Vec<u32> = match unnumbered(path) {
         Some(_) => Vec::new(),

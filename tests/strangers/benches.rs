@@ -92,13 +92,13 @@ fn two_languages_buses_and_odd_clocks_pass() {
 /// Each clock, each bus with each language; not every pair of a clock with a bus or a language: the bench has one text for all buses, and its
 /// arithmetic of the clock is the same in each.
 #[test]
-#[ignore = "slow: clocks and languages, behind APB and Wishbone"]
+#[ignore = "slow: all clocks and languages with APB and Wishbone"]
 fn every_language_and_odd_clock_passes_behind_apb_and_wishbone() {
     clocks_pass("apb", |bus| ["apb", "wishbone"].contains(&bus));
 }
 
 #[test]
-#[ignore = "slow: clocks and languages, behind AXI4-Lite and the parallel bus"]
+#[ignore = "slow: all clocks and languages with AXI4-Lite and the parallel bus"]
 fn every_language_and_odd_clock_passes_behind_axi_lite_and_parallel() {
     clocks_pass("axi-lite", |bus| ["axi_lite", "parallel"].contains(&bus));
 }

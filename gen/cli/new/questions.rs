@@ -362,7 +362,7 @@ pub static QUESTIONS: &[Question] = &[
 ];
 
 impl Question {
-    /// Whether encoders of the protocol that was answered have this key of theirs.
+    /// True if a key of `[endat]` fits the protocol that was answered.
     pub fn fits(&self, answers: &Answers) -> bool {
         match self.of {
             Of::Key(key, table) => table == keys::COMMON && is_of_form(key, answers),

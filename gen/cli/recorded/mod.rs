@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Which recording.
 #[derive(Args)]
 pub struct FileArgs {
-    /// Recording: CSV, JSON lines or Parquet; several files of one recording; the files that it filled behind FILE are read, too
+    /// Recording: CSV, JSON lines or Parquet; several files of one recording in any order. The files that a Parquet recording filled after FILE are read, too
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     #[command(flatten)]

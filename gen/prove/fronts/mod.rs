@@ -160,7 +160,7 @@ impl Claim {
         Ok(rows.collect())
     }
 
-    /// Labels of the assertions whose condition a run of a master meets, in the module as one text.
+    /// Labels of the assertions whose condition a run of a master meets, in the flat module.
     fn met(&self, module: &Module, folder: &Path, flat: &str) -> Result<Vec<String>, GenError> {
         let claims = cover::covers(&self.text(module));
         let model = tools::claims(folder, flat, &module.name, &claims)?;
@@ -169,7 +169,7 @@ impl Claim {
         Ok(paths.iter().filter_map(label).collect())
     }
 
-    /// Asks the solver about the module as one text. A run that breaks a promise is looked for where the induction finds none that begins at the start values.
+    /// Asks the solver about the flat module. A run that breaks a promise is looked for where the induction finds none that begins at the start values.
     pub fn ask(&self, module: &Module, folder: &Path, flat: &str) -> Result<Answer, GenError> {
         let text = self.text(module);
         let (promises, _) = text.split_once(INSIDE).unwrap_or((&text, ""));
@@ -212,7 +212,7 @@ impl Claim {
     }
 }
 
-/// A module of these files with all that it holds, as one text; `first` is what yosys does before it reads them.
+/// Flattens a module of these files into one text; yosys runs `first` before it reads them.
 pub(super) fn flat(
     design: &Design,
     files: &[Artifact],

@@ -5,7 +5,8 @@ use super::{parquet, Head};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// All files of the recordings, in their order: the given ones, and those that a Parquet file without a number goes on in. `notes` tell of both.
+/// Adds to the given files those that a Parquet recording filled after its first one, and sorts all. `notes` name the files that it adds, and
+/// those that it leaves out.
 pub(super) fn all(files: &[PathBuf], notes: &mut Vec<String>) -> Vec<PathBuf> {
     let mut all = files.to_vec();
     for file in files {

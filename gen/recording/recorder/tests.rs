@@ -198,7 +198,7 @@ fn behind_a_file_with_all_its_groups_another_one_begins() {
         wishes(target, Format::Parquet, Keep::All, limits),
         rows + 7..rows + 20,
     );
-    // Nothing is behind a copy of the first file.
+    // A copy of the first file under another name has no numbered files.
     let first = dir.path().join("first.parquet");
     fs::copy(&names[0], &first).unwrap();
     let gone = read_all(&[first, third], false, &mut |_, _| {}).unwrap();
@@ -246,7 +246,7 @@ fn hour(rows: u64) -> f64 {
         0..rows,
     );
     assert_eq!(recorder.written(), rows);
-    // Its first file says which ones are behind it.
+    // The reader finds the other files of the hour by itself.
     let found = stats(&[path]);
     assert_eq!((found.rows, found.missing), (rows, 0));
     assert_eq!(found.channels[0].track.count, rows - 1);

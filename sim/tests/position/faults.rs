@@ -416,13 +416,13 @@ fn fifteen_bits_too_few_and_a_low_line_pass_the_crc_and_fail_at_the_tail() {
 #[test]
 fn a_low_tail_tells_a_wrong_crc_and_f1_of_the_frame_too() {
     let setup = Setup::card();
-    let behind = setup.answer_bits();
+    let after_frame = setup.answer_bits();
     for is_wrong in [false, true] {
         for has_alarm in [false, true] {
             let mut setup = setup.clone().defect(
                 1,
                 Defect::StuckFrom {
-                    bit: behind,
+                    bit: after_frame,
                     level: false,
                 },
             );
