@@ -86,8 +86,13 @@ impl std::error::Error for GenError {}
 
 /// At most 60 characters, on one line, without control characters.
 pub fn shorten(text: &str) -> String {
-    let mut short: String = text.chars().take(60).flat_map(printable).collect();
-    if text.chars().nth(60).is_some() {
+    shorten_to(text, 60)
+}
+
+/// At most so many characters, on one line, without control characters.
+pub fn shorten_to(text: &str, most: usize) -> String {
+    let mut short: String = text.chars().take(most).flat_map(printable).collect();
+    if text.chars().nth(most).is_some() {
         short.push_str("...");
     }
     short

@@ -213,10 +213,13 @@ fn ran(output: &Output) -> Ran {
     }
 }
 
-/// What a program has said from a word on, all of it if the word is not there; short, and in one line.
-pub fn from(text: &str, word: &str) -> String {
-    let at = text.find(word).unwrap_or(0);
-    crate::error::shorten(text[at..].trim())
+/// Characters of a program's message that are shown: the name of a file, a line and a sentence.
+const MESSAGE_CHARACTERS: usize = 200;
+
+/// The line of what a program has said that holds a word, all of it if none does; short, and in one line.
+pub fn line_with(text: &str, word: &str) -> String {
+    let line = text.lines().find(|line| line.contains(word));
+    crate::error::shorten_to(line.unwrap_or(text).trim(), MESSAGE_CHARACTERS)
 }
 
 /// The number of a version in what a program says, as in `Verilator 5.006 2023-01-22` or `valgrind-3.19.0`.

@@ -92,6 +92,7 @@ pub struct Snapshot {
     moment_wrong: Signal<Local, Bit>,
     ago: Signal<Local, Bits<11>>,
     keeps_earlier: Constant<Bit>,
+    never_withdraws: Constant<Bit>,
     upset_cause: Constant<Bits<5>>,
     upset_flag: Constant<Bits<20>>,
 }
@@ -99,17 +100,28 @@ pub struct Snapshot {
 impl Snapshot {
     /// For a protocol with this cause and this flag for what is stored and was upset.
     pub fn new(upset_cause: u64, upset_flag: u64) -> Self {
-        Self::keeping(true, upset_cause, upset_flag)
+        Self::keeping(true, false, upset_cause, upset_flag)
     }
 
     /// The same without the position before: `withdraw` leaves none.
     pub fn without_earlier(upset_cause: u64, upset_flag: u64) -> Self {
-        Self::keeping(false, upset_cause, upset_flag)
+        Self::keeping(false, false, upset_cause, upset_flag)
     }
 
-    fn keeping(keeps_earlier: bool, upset_cause: u64, upset_flag: u64) -> Self {
+    /// The same for a protocol that never withdraws a position: all that is wrong is known when the result comes.
+    pub fn without_withdrawal(upset_cause: u64, upset_flag: u64) -> Self {
+        Self::keeping(false, true, upset_cause, upset_flag)
+    }
+
+    fn keeping(
+        keeps_earlier: bool,
+        never_withdraws: bool,
+        upset_cause: u64,
+        upset_flag: u64,
+    ) -> Self {
         Self::from_parts(SnapshotParts {
             keeps_earlier: Constant::new(keeps_earlier),
+            never_withdraws: Constant::new(never_withdraws),
             upset_cause: Constant::new(upset_cause.into()),
             upset_flag: Constant::new(upset_flag.into()),
         })

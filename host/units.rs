@@ -173,10 +173,17 @@ impl Scale {
     pub fn value(&self, steps: i128) -> f64 {
         match *self {
             Self::Rotary { steps_per_turn, .. } => {
-                let turn = i128::from(steps_per_turn.max(1));
+                let turn = steps_per_turn.max(1);
                 // Towards 0: a step back from 0 keeps all its digits.
-                let (turns, within) = (steps / turn, steps % turn);
-                turns as f64 * 360.0 + within as f64 * 360.0 / turn as f64
+                let (turns, within) = match (i64::try_from(steps), i64::try_from(turn)) {
+                    // A division of 128 bits costs more than all else of a row.
+                    (Ok(steps), Ok(turn)) => ((steps / turn) as f64, (steps % turn) as f64),
+                    _ => {
+                        let turn = i128::from(turn);
+                        ((steps / turn) as f64, (steps % turn) as f64)
+                    }
+                };
+                turns * 360.0 + within * 360.0 / turn as f64
             }
             Self::Linear { step_nm } => steps as f64 * step_nm * 1e-6,
             Self::Counted | Self::Counts { .. } => steps as f64,
@@ -262,6 +269,22 @@ mod tests {
         assert_eq!(linear.convert(123_456).turns, None);
         assert_eq!((linear.digits(), linear.range()), (5, None));
         assert!((multiturn.si(1 << 24) - std::f64::consts::PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn steps_beyond_64_bits_are_turns_too() {
+        let scale = Scale::singleturn(20);
+        for (turns, within) in [
+            (5i128, 1i128 << 18),
+            (1 << 60, 1 << 18),
+            (-(1 << 60), -1 << 18),
+        ] {
+            let value = scale.value((turns << 20) + within);
+            assert_eq!(
+                value,
+                turns as f64 * 360.0 + within as f64 / 1048576.0 * 360.0
+            );
+        }
     }
 
     #[test]

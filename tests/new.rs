@@ -376,6 +376,42 @@ fn board_goes_with_every_bus_or_the_error_names_what_goes() {
     assert_eq!(made.exit_code, 0, "{made:?}");
 }
 
+/// Catches a remedy that names a table of the file, which is not written yet, and an empty answer that is taken for none.
+#[test]
+fn number_of_channels_and_empty_answers_name_options() {
+    let more = ["new", "-", "--yes", "--bus", "none", "--channels"];
+    let told = bad(&[&more[..], &["2"]].concat(), 2);
+    assert!(
+        told.starts_with("--channels = 2: ") && told.contains("--channels 1"),
+        "{told}"
+    );
+    good(&[&more[..], &["1"]].concat());
+    let told = remedies(&told);
+    let (_, buses) = told.iter().find(|(option, _)| *option == "--bus").unwrap();
+    for bus in buses {
+        good(&["new", "-", "--yes", "--bus", bus, "--channels", "2"]);
+    }
+    for option in ["protocol", "bus", "board", "name", "clock-hz", "parity"] {
+        let option = format!("--{option}");
+        let protocol = if option == "--parity" { "ssi" } else { "endat" };
+        let new = |value: Option<&str>| {
+            let mut all = vec!["new", "-", "--yes"];
+            if option != "--protocol" {
+                all.extend(["--protocol", protocol]);
+            }
+            all.extend(value.into_iter().flat_map(|value| [&*option, value]));
+            run(&all)
+        };
+        let refused = new(Some("")).messages.join("\n");
+        let told = refused.strip_prefix(&format!("{option} = \"\": is empty; give {option} "));
+        let told = told.and_then(|rest| rest.strip_suffix(&format!(", or leave {option} out")));
+        let value = told.unwrap_or_else(|| panic!("{refused}"));
+        for value in [Some(value), None] {
+            assert_eq!(new(value).exit_code, 0, "{option} {value:?}");
+        }
+    }
+}
+
 /// Catches pins of `new` that the board does not have, and a board of the command line that has too few without a remedy.
 #[test]
 fn emit_takes_free_pins_from_new() {

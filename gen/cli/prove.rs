@@ -108,7 +108,7 @@ fn subject(configuration: &Configuration) -> Result<Subject, GenError> {
 }
 
 /// Refuses a cable that is longer than the settings of the first channel allow: its frames need not arrive.
-fn check_delay(project: &Project, delay_cycles: u32) -> Result<(), GenError> {
+fn check_delay(source: &SourceArgs, project: &Project, delay_cycles: u32) -> Result<(), GenError> {
     let Some((_, channel)) = project.card.endat_channels().next() else {
         return Ok(());
     };
@@ -117,8 +117,13 @@ fn check_delay(project: &Project, delay_cycles: u32) -> Result<(), GenError> {
     if u64::from(delay_cycles) <= most {
         return Ok(());
     }
+    // A preset stays as it is.
+    let or_raise = match source.config {
+        Some(_) => ", or raise cable_m",
+        None => "",
+    };
     Err(GenError::input(format!(
-        "--frames = {delay_cycles}: a delay of at most {most} system clock cycles one way is what cable_m = {} allows; give at most {most}, or raise cable_m",
+        "--frames = {delay_cycles}: a delay of at most {most} system clock cycles one way is what cable_m = {} allows; give at most {most}{or_raise}",
         channel.spec.cable_m
     )))
 }
@@ -130,7 +135,7 @@ fn frames(
     project: &Project,
     delay_cycles: u32,
 ) -> Result<Outcome, GenError> {
-    check_delay(project, delay_cycles)?;
+    check_delay(&arguments.source, project, delay_cycles)?;
     let undriven = arguments.undriven;
     let undriven = undriven.unwrap_or_else(|| Undriven::usual(&project.card));
     let line = Line::usual(delay_cycles, undriven, project.card.system_hz);

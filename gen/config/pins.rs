@@ -83,6 +83,8 @@ pub(super) fn assign_pins(
         on.complain_short(&ports, wanted, free.len());
     }
     let mut next_free = free.iter();
+    // Each complaint offers another pin.
+    let mut spare = free.iter().skip(wanted);
     let mut all = vec![Assignment {
         signal: OSCILLATOR_PORT.into(),
         kind: Kind::Oscillator,
@@ -129,7 +131,7 @@ pub(super) fn assign_pins(
             } else {
                 &signal
             };
-            let remedy = match free.first() {
+            let remedy = match spare.next() {
                 Some(place) => {
                     format!("use another pin for one of the two, for example {place}")
                 }

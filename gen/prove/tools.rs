@@ -119,8 +119,8 @@ pub(super) fn reached(folder: &Path, model: &str, steps: &str) -> Result<Vec<Str
 
 pub(super) fn not_read(text: &str) -> GenError {
     GenError::input(format!(
-        "{YOSYS}: cannot read the Verilog: {}; is it as it was emitted, with its properties?",
-        crate::tools::from(text, "ERROR")
+        "{YOSYS}: cannot read the Verilog: {}; correct the file, or prove it as `emit` writes it",
+        crate::tools::line_with(text, "ERROR")
     ))
 }
 

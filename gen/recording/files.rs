@@ -83,6 +83,18 @@ pub fn behind(path: &Path) -> Vec<PathBuf> {
     found.into_iter().map(|n| numbered(path, n)).collect()
 }
 
+/// Finds the files before a numbered one: those of lower numbers, the highest first, and the one without a number.
+pub fn before(path: &Path) -> Vec<PathBuf> {
+    let Some((plain, number)) = unnumbered(path) else {
+        return Vec::new();
+    };
+    let mut lower: Vec<u32> = numbers(&plain).filter(|other| *other < number).collect();
+    lower.sort_unstable_by(|a, b| b.cmp(a));
+    let mut found: Vec<PathBuf> = lower.into_iter().map(|n| numbered(&plain, n)).collect();
+    found.extend(plain.is_file().then_some(plain));
+    found
+}
+
 /// Sorts files of one name by their numbers; the file without a number is the first. Names keep the order in which they were given.
 pub fn in_order(files: &[PathBuf]) -> Vec<PathBuf> {
     let part = |file: &PathBuf| unnumbered(file).unwrap_or_else(|| (file.clone(), 0));
@@ -95,12 +107,22 @@ pub fn in_order(files: &[PathBuf]) -> Vec<PathBuf> {
     order
 }
 
-/// Whether a file is the one of the next number behind another one of the same recording.
+/// True for a name with a number.
+pub fn is_numbered(path: &Path) -> bool {
+    unnumbered(path).is_some()
+}
+
+/// The name of the file that a recording goes on in behind this one.
+pub fn next(path: &Path) -> PathBuf {
+    match unnumbered(path) {
+        Some((plain, number)) => numbered(&plain, number.saturating_add(1)),
+        None => numbered(path, 2),
+    }
+}
+
+/// Whether a file is the one of the next number behind another one that has a number, too.
 pub fn is_next(path: &Path, before: &Path) -> bool {
-    unnumbered(before).is_some_and(|(plain, number)| {
-        let next = number.checked_add(1);
-        next.is_some_and(|next| numbered(&plain, next) == path)
-    })
+    is_numbered(before) && next(before) == path
 }
 
 /// The folder that a file is in.

@@ -269,3 +269,44 @@ fn what_is_data_is_there_as_json() {
     assert_eq!(looks.len(), 2);
     assert_eq!(looks[1]["channels"][1]["unit"], "deg");
 }
+
+/// Catches a rehearsal that nobody can count, because its card was faster than the clock of the host.
+#[test]
+fn recording_that_was_begun_before_the_end_of_the_last_one_is_read() {
+    let dir = Dir::new("resume-fast");
+    let out = dir.path("night.parquet");
+    let log = ["log", "--port", "load", "--samples", "200000", "--out"];
+    for _ in 0..3 {
+        let told = run(&[&log[..], &[&*out, "--resume"]].concat());
+        assert_eq!(told.exit_code, 0, "{told:?}");
+    }
+    let files = [1, 2, 3].map(|n| dir.path(&format!("night-000{n}.parquet")));
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let told = run(&[&["stats", "--json"][..], &files].concat());
+    assert_eq!((told.exit_code, told.messages.len()), (0, 2), "{told:?}");
+    let note = "was begun before the last row of the file before it";
+    assert!(told.messages.iter().all(|m| m.contains(note)), "{told:?}");
+    let found: Value = serde_json::from_str(&told.stdout).unwrap();
+    assert_eq!(
+        (&found["rows"], &found["missing"]),
+        (&600_000.into(), &0.into())
+    );
+    // A file that is left out is another matter.
+    let told = bad(&["stats", files[0], files[2]], 2);
+    assert!(told.contains("another recording begins here"), "{told}");
+    // One that is damaged is not named by anybody, and stops the others until it is moved away.
+    let plain = dir.path("whole.parquet");
+    fs::copy(files[0], &plain).unwrap();
+    let behind = dir.path("whole-0002.parquet");
+    let mut bytes = fs::read(&plain).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&behind, bytes).unwrap();
+    let told = bad(&["stats", &plain], 2);
+    assert!(
+        told.contains(&behind) && told.contains("or move it away to read the others"),
+        "{told}"
+    );
+    fs::rename(&behind, dir.path("bad.parquet")).unwrap();
+    good(&["stats", &plain]);
+}

@@ -303,6 +303,12 @@ fn a_user_who_changes_lines_sees_proofs_fail() {
     std::fs::write(&file, "module nothing; endmodule\n").unwrap();
     let told = bad(&["prove", "--config", &config, "--rtl", &rtl], 2);
     assert!(told.contains("cannot read the Verilog"), "{told}");
+    std::fs::write(&file, "module bare_channel (\n  input a;\n").unwrap();
+    let told = bad(&["prove", "--config", &config, "--rtl", &rtl], 2);
+    assert!(
+        told.contains("bare_channel.v:2: ERROR: syntax error"),
+        "{told}"
+    );
 }
 
 /// The files of a configuration and of what is emitted for it.
@@ -437,6 +443,13 @@ fn what_cannot_be_proved_says_why() {
         ),
         "{told}"
     );
+    // A preset's cable stays as long as it is.
+    assert!(told.trim_end().ends_with("; give at most 60"), "{told}");
+    let dir = Dir::new("prove-delay");
+    dir.write("bare.toml", BARE.as_bytes());
+    let path = dir.path("bare.toml");
+    let told = bad(&["prove", "--config", &path, "--frames", "61"], 2);
+    assert!(told.trim_end().ends_with(", or raise cable_m"), "{told}");
     let told = bad(&["prove", "--rtl", "no_such_folder"], 2);
     assert!(told.contains("give the folder that `emit` wrote"), "{told}");
 }

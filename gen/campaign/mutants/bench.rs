@@ -263,6 +263,6 @@ fn build(folder: &Path, top: &str, files: &[Artifact], optimised: &str) -> Resul
     }
     Err(GenError::fault(
         "campaign mutants",
-        &format!("verilator: {}", tools::from(&ran.text(), "%Error")),
+        &format!("verilator: {}", tools::line_with(&ran.text(), "%Error")),
     ))
 }

@@ -77,7 +77,10 @@ pub fn yosys_must(folder: &Path, name: &str, script: String) -> Result<(), GenEr
     }
     Err(GenError::fault(
         "campaign mutants",
-        &format!("{YOSYS}: {name}.ys: {}", tools::from(&ran.text(), "ERROR")),
+        &format!(
+            "{YOSYS}: {name}.ys: {}",
+            tools::line_with(&ran.text(), "ERROR")
+        ),
     ))
 }
 

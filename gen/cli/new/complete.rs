@@ -19,9 +19,15 @@ pub fn complete(given: &Answers) -> Result<Answers, Wrong> {
     // Which of the usual ones; the next one where one does not go with the rest.
     let mut tried: BTreeMap<&str, usize> = BTreeMap::new();
     for question in QUESTIONS.iter().filter(|q| given.contains_key(q.name)) {
-        // An optional key may have an empty answer.
-        if given[question.name].is_empty() && question.may_be_empty() {
-            continue;
+        if given[question.name].is_empty() {
+            if question.may_be_empty() {
+                continue;
+            }
+            let usual = (question.usual)(&Answers::new()).swap_remove(0);
+            return Err(Wrong::Answer(vec![format!(
+                "--{0} = \"\": is empty; give --{0} {usual}, or leave --{0} out",
+                question.name
+            )]));
         }
         let literal = text::literal(question.of, &question.option(given), &given[question.name]);
         literal.map_err(|error| Wrong::Answer(error.messages().to_vec()))?;

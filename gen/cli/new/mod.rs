@@ -87,7 +87,12 @@ fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
                     .map(|one| remedies::of_board(given, &all, &one.text))
                     .collect(),
                 // No other board helps before these are right.
-                false => others.iter().map(|one| in_options(&one.text)).collect(),
+                false => (others.iter())
+                    .map(|one| {
+                        let of_channels = remedies::of_channels(given, &all, &one.text);
+                        of_channels.unwrap_or_else(|| in_options(&one.text))
+                    })
+                    .collect(),
             }
         }
     })

@@ -370,9 +370,10 @@ impl Question {
         }
     }
 
-    /// Whether no answer is one: the key is left out.
+    /// Whether no answer is one: the key is left out, or is a list of nothing.
     pub fn may_be_empty(&self) -> bool {
-        (self.usual)(&Answers::new()).contains(&String::new())
+        let is_list = matches!(self.of, Of::Key(key, _) if key.kind == Kind::Texts);
+        is_list || (self.usual)(&Answers::new()).contains(&String::new())
     }
 
     /// What it is, as the table of keys says it.

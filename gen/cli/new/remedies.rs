@@ -3,6 +3,8 @@
 use super::complete::{complete, useless};
 use super::questions::{buses_of_boards, Answers, NO_BOARD};
 use crate::board::{self, Board};
+use crate::config::keys::CHANNELS;
+use crate::form::key::head;
 
 /// True if `new` accepts these answers.
 fn is_accepted(given: &Answers) -> bool {
@@ -40,6 +42,15 @@ pub fn use_another(given: &Answers, all: &Answers) -> String {
         true => "leave --board out".to_owned(),
         false => format!("use {}", found.join(", or ")),
     }
+}
+
+/// A complaint about the number of channels, with options in its remedy.
+pub fn of_channels(given: &Answers, all: &Answers, complaint: &str) -> Option<String> {
+    let told = given.get("channels")?;
+    let (_, rest) = complaint.split_once(&format!("{}: ", head(CHANNELS)))?;
+    let problem = rest.rsplit_once("; ").map_or(rest, |(what, _)| what);
+    let remedy = use_another(given, all);
+    Some(format!("--channels = {told}: {problem}; {remedy}"))
 }
 
 /// True if a complaint of the configuration is about what the board has, not about its name.

@@ -377,7 +377,7 @@ fn gates(
 
 fn unreadable(case: &Case, what: &str) -> GenError {
     GenError::input(format!(
-        "{}: cannot run the Verilog: {what}; is it as it was emitted, with its properties?",
+        "{}: cannot run the Verilog: {what}; correct the file, or prove it as `emit` writes it",
         case.name
     ))
 }

@@ -310,6 +310,25 @@ fn ends_of_a_full_file_are_below_5_percent_of_what_is_written() {
     assert!(night > 0.5, "{night}");
 }
 
+/// Catches fourteen minutes that are taken for a whole night, since the other files were not copied.
+#[test]
+fn full_file_without_the_next_one_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    for groups in [GROUPS - 1, GROUPS] {
+        let path = dir.path().join(format!("night{groups}.parquet"));
+        let layout = Layout::of(vec![Scale::singleturn(29); 2]);
+        let mut file = ParquetFile::new(File::create(&path).unwrap(), &layout, &about()).unwrap();
+        for n in 0..u64::from(groups) {
+            file.row(&even(n)).unwrap();
+            file.flush().unwrap();
+        }
+        let told = read_all(&[path], false, &mut |_, _| {}).unwrap().notes;
+        let wanted = "night16.parquet: is full: a longer recording goes on in ";
+        let is_told = told.iter().any(|note| note.contains(wanted));
+        assert_eq!(is_told, groups == GROUPS, "{groups}: {told:?}");
+    }
+}
+
 #[test]
 #[ignore = "slow: a full file of Parquet, of two channels"]
 fn ends_of_a_file_that_was_written_are_below_5_percent() {

@@ -121,6 +121,11 @@ impl Wrong {
     }
 }
 
+/// Text that says nothing of its time.
+const NO_START: &str = "does not say when it was begun, and is put right behind the file before it: the pause between is not in any figure; `log --about` lets text say so";
+/// The clock of a host was set back, or a card made its rows faster than they happen.
+const BEGUN_TOO_EARLY: &str = "was begun before the last row of the file before it by the clock of the host, and is put right behind it";
+
 type Take<'a> = &'a mut dyn FnMut(&Head, &mut Parsed) -> Result<(), Wrong>;
 /// What takes the rows of a recording.
 pub type Rows<'a> = &'a mut dyn FnMut(&Head, &Measurement);
@@ -204,10 +209,10 @@ pub struct Reader {
     before_s: Option<f64>,
     /// The file that was read last.
     last: Option<PathBuf>,
-    /// A file that may go on behind the last one, does not say when it was begun, and may have a time of its own.
-    follows: bool,
-    /// It was put right behind it.
-    is_closed_up: bool,
+    /// Why a file may be put right behind the last one, if its time is before the end of that.
+    follows: Option<&'static str>,
+    /// It was, and why.
+    is_closed_up: Option<&'static str>,
     offset_s: f64,
     /// The next row is the first one of its file.
     begins_file: bool,
@@ -252,7 +257,8 @@ impl Reader {
                 "is empty; give a file of `log` or of the live page",
             )));
         }
-        self.follows = (self.last.as_deref()).is_some_and(|last| is_next(path, last));
+        let is_next = (self.last.as_deref()).is_some_and(|last| is_next(path, last));
+        self.follows = is_next.then_some(NO_START);
         let mut is_first = true;
         let mut notes = Vec::new();
         let mut next = |head: &Head, row: &mut Parsed| {
@@ -281,8 +287,8 @@ impl Reader {
         if is_first {
             self.begin(&head).map_err(at)?;
         }
-        if std::mem::take(&mut self.is_closed_up) {
-            notes.push(": does not say when it was begun, and is put right behind the file before it: the pause between is not in any figure; `log --about` lets text say so".into());
+        if let Some(why) = self.is_closed_up.take() {
+            notes.push(format!(": {why}"));
         }
         let notes = notes
             .into_iter()
@@ -330,22 +336,23 @@ impl Reader {
             )
         })?;
         self.offset_s = since.as_secs_f64();
-        if self.offset_s != offset_s {
+        let is_begun_again = self.offset_s != offset_s;
+        if is_begun_again {
             self.order.interrupt();
         }
-        self.follows = false;
+        self.follows = (self.follows.filter(|_| is_begun_again)).map(|_| BEGUN_TOO_EARLY);
         Ok(())
     }
 
     /// Makes a measurement of a row.
     fn measure(&mut self, path: &Path, row: &mut Parsed) -> Result<(), Wrong> {
         let mut time_s = row.time_s + self.offset_s;
-        if let (true, true, Some(last)) = (self.begins_file, self.follows, self.last_s) {
+        if let (true, Some(why), Some(last)) = (self.begins_file, self.follows, self.last_s) {
             if time_s < last {
                 let step = last - self.before_s.unwrap_or(last);
                 self.offset_s = last + step - row.time_s;
                 time_s = row.time_s + self.offset_s;
-                self.is_closed_up = true;
+                self.is_closed_up = Some(why);
             }
         }
         if !time_s.is_finite() {
@@ -406,6 +413,15 @@ impl Reader {
     }
 }
 
+/// What is wrong with a file that the recording has beside those that were given.
+fn move_away(wrong: &GenError) -> GenError {
+    let text = wrong.messages().join("; ");
+    let problem = text.rsplit_once("; ").map_or(&*text, |(what, _)| what);
+    GenError::input(format!(
+        "{problem}; copy it again, or move it away to read the others"
+    ))
+}
+
 /// What a file says before its rows, and none of them; none if there is none.
 pub fn first(path: &Path) -> Result<Option<Head>, GenError> {
     let mut reader = Reader::default();
@@ -451,10 +467,16 @@ pub fn read_as(
     let all = parts::all(files, &mut reader.notes);
     let mut rows = 0u64;
     for file in &all {
-        reader.rows(file, &mut |head, row| {
+        let read = reader.rows(file, &mut |head, row| {
             rows += 1;
             take(head, row);
             Ok(())
+        });
+        // Nobody named it.
+        let is_found = !files.contains(file);
+        read.map_err(|wrong| match is_found {
+            true => move_away(&wrong),
+            false => wrong,
         })?;
     }
     if rows == 0 {

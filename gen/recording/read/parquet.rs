@@ -208,9 +208,19 @@ fn about(file: &SerializedFileReader<File>) -> Option<Value> {
     serde_json::from_str(said.filter_map(|kv| kv.value.as_deref()).next()?).ok()
 }
 
-/// The same of a file by its name; none if it is no such file.
+/// Opens a file by its name; none if it is no such file.
+fn open(path: &Path) -> Option<SerializedFileReader<File>> {
+    SerializedFileReader::new(File::open(path).ok()?).ok()
+}
+
+/// The description of its recording that a file carries; none if it is no such file.
 pub(super) fn about_of(path: &Path) -> Option<Value> {
-    about(&SerializedFileReader::new(File::open(path).ok()?).ok()?)
+    about(&open(path)?)
+}
+
+/// How many groups of rows a file has; none if it is no such file.
+pub(super) fn groups_of(path: &Path) -> Option<usize> {
+    Some(open(path)?.num_row_groups())
 }
 
 /// Reads a file; what it says before its rows.

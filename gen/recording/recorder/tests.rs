@@ -186,6 +186,12 @@ fn behind_a_file_with_all_its_groups_another_one_begins() {
         "{notes:?}"
     );
     assert_eq!(stats(&names[1..]).rows, 10);
+    let alone = read_all(&names[1..], false, &mut |_, _| {}).unwrap().notes;
+    assert!(
+        alone[0].contains("long-0005.parquet: goes on behind") && alone[0].contains("long.parquet"),
+        "{alone:?}"
+    );
+    assert_eq!(alone.len(), 1);
     let misfits = read_all(&names, false, &mut |_, _| {}).unwrap().misfits;
     assert_eq!(misfits.rows, 0, "{misfits:?}");
     // One that is gone is no pause.

@@ -139,7 +139,7 @@ impl Default for TFormatPort {
     fn default() -> Self {
         Self::from_parts(TFormatPortParts {
             filter: InputFilter::new(Features::NONE),
-            snapshot: Snapshot::without_earlier(cause::UPSET, cause::flag(cause::UPSET)),
+            snapshot: Snapshot::without_withdrawal(cause::UPSET, cause::flag(cause::UPSET)),
         })
     }
 }
