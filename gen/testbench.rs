@@ -218,6 +218,16 @@ fn moves_starts(card: &CardConfig, ports: &[Port]) -> bool {
     !card.line.alignment && !has_list && channels.all(|((_, c), port)| has_room(c, port))
 }
 
+/// EnDat channels whose start bits move beyond their windows in one direction: late ones would be at most half a bit long.
+fn early_only(card: &CardConfig) -> Vec<usize> {
+    // The delay that has followed start bits may be a cycle off.
+    let cycles = |c: &ChannelConfig| c.start_window_cycles + beyond_cycles(card) + 1;
+    let is_short = |c: &ChannelConfig| 2 * cycles(c) >= c.period_cycles;
+    let channels = card.endat_channels();
+    let short = channels.filter(|(_, c)| is_short(c));
+    short.map(|(index, _)| index).collect()
+}
+
 /// EnDat channels, and how far from its place a start bit may be.
 fn windows(card: &CardConfig) -> Vec<Value> {
     let channels = card.endat_channels();
@@ -352,6 +362,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         measures => purpose::first_measured(card),
         tests => purpose::tests(card),
         windows => windows(card),
+        early_only => early_only(card),
         moves_starts => moves_starts(card, &ports),
         beyond_cycles => beyond_cycles(card),
         diagnosis => card.service.diagnosis,
