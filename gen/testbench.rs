@@ -349,6 +349,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         words => Serde(blocks.into_iter().flat_map(words).filter(|w| has_infos || !w.name.starts_with("RESULT_INFO_")).collect::<Vec<_>>()),
         has_irq => project.bus != HostBus::Uart,
         interrupt => card.outputs.interrupt.then(|| result_events(card)),
+        has_list => !purpose::configured_list(card).is_empty(),
         direct => card.outputs.position,
         second => card.safety.second_interface,
         fields => Serde([CARD_CONFIG, CHANNEL_CONFIG, RESULT, DIRECT].iter().flat_map(fields).filter(|f| has_infos || !f.name.starts_with("INFO_")).collect::<Vec<_>>()),

@@ -47,7 +47,7 @@ const CHANNEL: &str = "Channel";
 
 /// Types of blocks that are proved with everything below them, each with all its inputs free; what is in one of them is not proved again. So is
 /// the port of another protocol, a block of an [`ENCODER_PORT`] that is called one.
-const PARTS: [&str; 7] = [
+const PARTS: [&str; 10] = [
     CHANNEL,
     "Exchange",
     "ChannelRegisters",
@@ -55,6 +55,9 @@ const PARTS: [&str; 7] = [
     "Stream",
     "UartBridge",
     "InputFilter",
+    "WordAccess",
+    "Interrupt",
+    "Moments",
 ];
 
 /// Cycles before the one that an induction step is about.

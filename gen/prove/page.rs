@@ -27,13 +27,13 @@ A property whose condition is never met says nothing: *EMPTY*, and the exit code
 
 The last table of the command has every module of your card, with its properties or with *none*.
 
-**What it does not say.** What stands in that table without a part is simulated only: services, line monitor, direct outputs, recovery counter, second interface, interrupt, trigger timers, the fronts of SPI and of the parallel bus. A property that
+**What it does not say.** What stands in that table without a part is simulated only: services, line monitor, direct outputs, recovery counter, second interface, trigger timers, the fronts of SPI and of the parallel bus. A property that
 says nothing of your card is told as *no claim*, with the part of the card that it is not about. A frame that carries a request, additional data or a supplement is not all position. `crc16_as_sent` takes for
-granted that a byte of a set, once it is there, stays until it has been written, as the port says. `first_word_as_sent` is about the first word of a command, while no access of an earlier one
+granted that a byte of a set, once it is there, stays until it has been written, as the port says; `never_overwritten` that a byte is taken only where one is; `stored_apart` that an exchange ends four cycles behind the one before at least. `first_word_as_sent` is about the first word of a command, while no access of an earlier one
 is under way; `request_as_asked` about a request ID that stays as long as the exchange lasts; `cells_timed` about bits of four cycles and more.
 
 **Found on the way**, and mended: a position frame refused behind the frame that measures had two results; a frame given up in the cycle of its last bit had two, too; a refused trigger took the
-result of the next one. A byte that was read in the very cycle in which an answer timed out met the next command: if that one wrote, a word was written that nobody had sent.
+result of the next one. With the diagnosis, a trigger lost while the delay was measured was forgotten where that frame's recovery time was too short. A byte that was read in the very cycle in which an answer timed out met the next command: if that one wrote, a word was written that nobody had sent.
 
 Each property refuses cores that are broken on purpose: `tests/prove/mutations.rs`.
 ";

@@ -14,6 +14,7 @@ use rust_hdl::prelude::*;
 
 /// Status, mask and line.
 #[derive(LogicBlock, Block)]
+#[properties("../properties/interrupt.sv")]
 pub struct Interrupt {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -5,7 +5,7 @@
 // counted_twice: Both counts of bits are the same, and so are both notes of the edge that takes none.
 // as_it_came: What is stored is what came: the sum of its bits is that of the bits as they were taken, unless there were more than 48.
 // good_is_whole: A position is taken only if DATA was HIGH before the frame and LOW behind it, all bits have come, its parity bit fits, and both copies are the same.
-// withdrawn: If DATA is still LOW when the longest recovery time is over, no position is valid, and there is a cause.
+// withdrawn: If DATA is still LOW when the longest recovery time is over, no position is valid, and there is a cause. A frame that brought none withdraws none.
 reg f_owed; initial f_owed = 1'b0;
 reg f_full; initial f_full = 1'b0;
 reg f_past_valid; initial f_past_valid = 1'b0;
@@ -21,6 +21,7 @@ always @(posedge clock) begin
 end
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
     if ($past((state == AT_RECOVERY) & is_due & !filter_level & good)) withdrawn: assert (!fresh & !position_valid & ((cause == 5'd8) | (cause == 5'd6)));
+    if ($past(position_valid) & !position_valid) withdrawn_only: assert (($past((state == AT_RECOVERY) & is_due & !filter_level) & $past(!(|found))) | (cause == 5'd6));
     if ((state == AT_LOW) & $past(state == AT_REST)) only_on_high: assert ($past(trigger & filter_level & frame[2]));
     if ((state == AT_REST) & $past(state != AT_REST)) waits_after_reset: assert ($past((state == AT_RECOVERY) & (is_due | (filter_level & !not_low))));
     if ((state == AT_RECOVERY) & $past(state != AT_RECOVERY)) waits_after_reset_judged: assert ($past(state == AT_JUDGE));

@@ -1,5 +1,12 @@
 // good_means: A position is good only if both CRC checks, F1 and F2 said so, its settings were whole, and an answer was taken.
 // one_result_each: An answer gives one result at most: none without a frame that was answered, refused, late or given up.
+// lost_is_told: A trigger that was lost is kept until a result tells it.
+reg f_past_valid; initial f_past_valid = 1'b0;
+always @(posedge clock) begin
+    f_past_valid <= 1'b1;
+    if (f_past_valid & !$past(reset) & $past(overrun) & !overrun)
+        lost_is_told: assert ((publish | late_fault) & ((flags_told & TRIGGER_OVERRUN) != 20'd0));
+end
 reg f_reason; initial f_reason = 1'b0;
 reg f_checked; initial f_checked = 1'b0;
 reg f_open; initial f_open = 1'b0;

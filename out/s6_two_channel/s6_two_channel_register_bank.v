@@ -522,6 +522,17 @@ module s6_two_channel_register_bank (
 `endif
 `ifndef FORMAL_ANY_STATE
     // read_is_one_moment: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
+    // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins, whatever other channels owe.
+    reg [1:0] f_came; initial f_came = 2'd0;
+    always @(posedge clock) begin
+        if (taken & (load | (f_came != 2'd2))) f_came <= load ? 2'd1 : f_came + 2'd1;
+        else if (load) f_came <= 2'd0;
+        if (reset) f_came <= 2'd0;
+    end
+    always @* begin
+        `FORMAL_LABEL(moves_on) assert (blocked | !blocked_now | (f_came != 2'd2) | load);
+        `FORMAL_LABEL(moves_on_counts) assert ((f_came != 2'd3) & (overdue == (f_came == 2'd2)) & (one_gone == (f_came != 2'd0)));
+    end
     reg f_reading; initial f_reading = 1'b0;
     always @(posedge clock) f_reading <= reading & !reset;
     always @* `FORMAL_LABEL(read_is_one_moment) assert (!f_reading | (!load & !show));

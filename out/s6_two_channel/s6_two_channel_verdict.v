@@ -174,6 +174,7 @@ module s6_two_channel_verdict (
         overrun_next = overrun;
         if (proven | gave_up_now | refused) begin
             flags_now_next = found_all;
+            // What ends a frame that measures is told to nobody.
             if (!measured) begin
                 overrun_next = 1'b0;
             end
@@ -251,6 +252,13 @@ module s6_two_channel_verdict (
     wire [0:0] announced = 1'd0;
     // good_means: A position is good only if both CRC checks, F1 and F2 said so, its settings were whole, and an answer was taken.
     // one_result_each: An answer gives one result at most: none without a frame that was answered, refused, late or given up.
+    // lost_is_told: A trigger that was lost is kept until a result tells it.
+    reg f_past_valid; initial f_past_valid = 1'b0;
+    always @(posedge clock) begin
+        f_past_valid <= 1'b1;
+        if (f_past_valid & !$past(reset) & $past(overrun) & !overrun)
+            `FORMAL_LABEL(lost_is_told) assert ((publish | late_fault) & ((flags_told & TRIGGER_OVERRUN) != 20'd0));
+    end
     reg f_reason; initial f_reason = 1'b0;
     reg f_checked; initial f_checked = 1'b0;
     reg f_open; initial f_open = 1'b0;

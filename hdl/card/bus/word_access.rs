@@ -24,6 +24,7 @@ pub const QUIET_US: u64 = 8;
 
 /// A word in four bytes.
 #[derive(LogicBlock, Block)]
+#[properties("../../properties/word_access.sv")]
 pub struct WordAccess {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -240,7 +240,11 @@ impl Logic for Verdict {
             | self.early.val()
         {
             self.flags_now.d.next = self.found_all.val();
-            if !self.is_own.val() & !self.measured.val() {
+            // What ends a frame that measures is told to nobody.
+            if !self.is_own.val()
+                & !self.measured.val()
+                & !(self.early.val() & self.is_silent.q.val())
+            {
                 self.overrun.d.next = false;
             }
         }

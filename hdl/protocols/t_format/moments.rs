@@ -22,6 +22,7 @@ use rust_hdl::prelude::*;
 
 /// Words of results.
 #[derive(LogicBlock, Block)]
+#[properties("../../properties/moments.sv")]
 pub struct Moments {
     /// System clock.
     pub clock: Signal<In, Clock>,

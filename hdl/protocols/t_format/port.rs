@@ -28,6 +28,7 @@ pub use endat_regs::protocols::t_format::word;
 
 /// Port of one T-format encoder.
 #[derive(LogicBlock, Block)]
+#[properties("../../properties/t_format_port.sv")]
 pub struct TFormatPort {
     /// System clock.
     pub clock: Signal<In, Clock>,
