@@ -1,4 +1,4 @@
-// no_short_low: CLOCK is LOW for half a period at least, by the shortest period that was set meanwhile.
+// no_short_low: CLOCK is LOW for half a period at least, and for half a period behind what holds it LOW, by the shortest period that was set meanwhile.
 // no_short_high: CLOCK is HIGH for half a period at least before it falls by itself.
 // starts_at_once: A start makes CLOCK LOW in the next cycle, whatever it was.
 reg [10:0] f_age_cycles; initial f_age_cycles = 11'd2046;
@@ -15,7 +15,7 @@ always @(posedge clock) begin
     f_start <= start;
     f_shortest <= f_shortest_now;
     if (f_age_cycles != 11'd2046) f_age_cycles <= f_age_cycles + 11'd1;
-    if (level_next != level) begin
+    if ((level_next != level) | (hold_low & !level)) begin
         f_age_cycles <= 11'd1;
         f_shortest <= f_half;
     end

@@ -120,6 +120,8 @@ pub const MUTATIONS: &[(Mutation, &str)] = &[
     (mutation("a special bit stored inverted", "special_bits", "status_next = {status[12:0], level}", "status_next = {status[12:0], !level}"), "special_as_it_came"),
     (mutation("an alarm not told", "special_bits", "bad = bad_before | {2'd0, |(status & ALARM_MASK)}", "bad = bad_before | 3'd0"), "special_is_found"),
     (mutation("a result owed for every strobe", "channel_registers_1", "waiting_next = 1'b0;", "waiting_next = trigger;"), "owed_once"),
+    (mutation("lead-in HIGH", "command_sender", "cells = {1'b0, command, 1'b0}", "cells = {1'b1, command, 1'b0}"), "command_as_asked"),
+    (mutation("half a period not counted behind a wait", "clock_gen", "half_restart = start | held;", "half_restart = start;"), "no_short_low"),
     (mutation("valid although none was there before", "snapshot", " valid_next = earlier_valid;", " valid_next = valid;"), "restored"),
     (mutation("a lost trigger forgotten behind a frame that measures", "verdict", "if (!measured) begin", "if (proven | gave_up_now | refused) begin"), "lost_is_told"),
     (mutation("two results are not enough", "register_bank", "(!mixed_now | (blocked_now & overdue))", "!mixed_now"), "moves_on"),
