@@ -100,8 +100,14 @@ impl Reader {
         Ok((!is_silent).then_some(text))
     }
 
-    /// Builds and runs the bench of an emission in a folder; whether it has passed, with an exit code that says so, and what was said.
-    pub fn play(self, folder: &Path, files: &[Artifact]) -> Result<(bool, String), GenError> {
+    /// Builds and runs the bench of an emission in a folder, with plusargs; whether it has passed, with an exit code that says so, and what
+    /// was said.
+    pub fn play(
+        self,
+        folder: &Path,
+        files: &[Artifact],
+        plusargs: &[&str],
+    ) -> Result<(bool, String), GenError> {
         let (core, bench) = sources(files);
         let Some(bench) = bench else {
             return Ok((false, "there is no bench".into()));
@@ -122,8 +128,8 @@ impl Reader {
             return Ok((false, text));
         }
         let (is_good, text) = match self {
-            Self::Icarus(_) => run("vvp", folder, &["-n", "sim.vvp"]),
-            Self::Verilator => run("./obj_dir/sim", folder, &[]),
+            Self::Icarus(_) => run("vvp", folder, &[&["-n", "sim.vvp"], plusargs].concat()),
+            Self::Verilator => run("./obj_dir/sim", folder, plusargs),
         }?;
         Ok((is_good && passes(&text), text))
     }

@@ -2,14 +2,14 @@
 
 use crate::tools;
 use endat_gen::campaign::mutants::recorder::{self, Watched};
-use endat_gen::campaign::mutants::stimulus::CYCLES;
 use endat_gen::campaign::mutants::{alone, record, subjects, sums_alone, Emission, Recording};
 use rtl_design::elaborate::Design;
 use rtl_design::engine::{Compiled, Engine, Keep, PortId};
 use std::collections::HashMap;
 
-/// Cycles of a block alone; the test of every subject has more.
+/// Cycles of a block alone; of every subject, more, and in the campaign a million.
 const QUICK_CYCLES: usize = 24_000;
+const ALL_CYCLES: usize = 100_000;
 
 /// A design that is given one row after the other, and the ports of each module that are watched.
 struct Watch {
@@ -153,7 +153,7 @@ fn every_port_agrees_and_another_is_named(mut emission: Emission) {
 #[ignore = "slow: every port of every subject"]
 fn every_port_of_every_subject_does_what_the_design_does() {
     for preset in subjects() {
-        blocks_agree(preset, CYCLES);
+        blocks_agree(preset, ALL_CYCLES);
         let bench = Emission::named(preset).unwrap().bench.text;
         let sets = ["\n        end_quiet_time;", "turn_forward("];
         if !sets.iter().any(|task| bench.contains(task)) {

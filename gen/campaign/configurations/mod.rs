@@ -202,7 +202,7 @@ impl Finding {
             }
         }
         if wants_bench {
-            let (passes, told) = Reader::Icarus("-g2005").play(folder.path(), files)?;
+            let (passes, told) = Reader::Icarus("-g2005").play(folder.path(), files, &[])?;
             self.bench = Some(if passes {
                 "bench_passed"
             } else {
