@@ -19,7 +19,7 @@ always @(posedge clock) begin
         one_number_each: assert (count == $past(count) + {15'd0, $past(publish)});
         if ($past(publish & !good & !take_back)) bad_is_not_fresh: assert (!is_fresh & $stable(f_set));
         if (!$past(publish | late_fault | upset_now)) faults_with_results: assert ($stable({cause_held, flags_held}));
-        if ($past(take_back & !take_good)) restored: assert (!is_fresh & (KEEPS_EARLIER ? (held == $past(earlier)) & (stamp == $past(earlier_stamp)) & (valid == $past(earlier_valid & !upset_now)) : !valid));
+        if (!NEVER_WITHDRAWS & $past(take_back & !take_good)) restored: assert (!is_fresh & (KEEPS_EARLIER ? (held == $past(earlier)) & (stamp == $past(earlier_stamp)) & (valid == $past(earlier_valid & !upset_now)) : !valid));
     end
 end
 // at rest the stored position fits its parity; the proof of a frame begins and ends there

@@ -362,6 +362,7 @@ module s6_two_channel_snapshot (
 `endif
 `ifndef FORMAL_ANY_STATE
     localparam         KEEPS_EARLIER = 1'b1;
+    localparam         NEVER_WITHDRAWS = 1'b0;
     // one_set: Position, its width, CRC, F2 and time change together, and only with a good result, or back when that was withdrawn.
     // one_number_each: Each result has the next number, and nothing else changes it.
     // bad_is_not_fresh: A result without good position leaves the position, and says that it is an earlier one.
@@ -383,7 +384,7 @@ module s6_two_channel_snapshot (
             `FORMAL_LABEL(one_number_each) assert (count == $past(count) + {15'd0, $past(publish)});
             if ($past(publish & !good & !take_back)) `FORMAL_LABEL(bad_is_not_fresh) assert (!is_fresh & $stable(f_set));
             if (!$past(publish | late_fault | upset_now)) `FORMAL_LABEL(faults_with_results) assert ($stable({cause_held, flags_held}));
-            if ($past(take_back & !take_good)) `FORMAL_LABEL(restored) assert (!is_fresh & (KEEPS_EARLIER ? (held == $past(earlier)) & (stamp == $past(earlier_stamp)) & (valid == $past(earlier_valid & !upset_now)) : !valid));
+            if (!NEVER_WITHDRAWS & $past(take_back & !take_good)) `FORMAL_LABEL(restored) assert (!is_fresh & (KEEPS_EARLIER ? (held == $past(earlier)) & (stamp == $past(earlier_stamp)) & (valid == $past(earlier_valid & !upset_now)) : !valid));
         end
     end
     // at rest the stored position fits its parity; the proof of a frame begins and ends there
