@@ -283,9 +283,10 @@ module s6_two_channel_frame_buffer (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
+    localparam         HAS_OTHER_FRAMES = 1'b0;
     // crc16_as_sent: The two bytes behind a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
     // whole_frames_only: What may be read ends with a frame: its end moves only when the last byte of a frame has been written.
-    // never_overwritten: A frame goes in only where there is room for all of it beside the bytes that wait.
+    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it beside the bytes that wait.
     reg [15:0] f_crc; initial f_crc = 16'hffff;
     reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
     wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;
@@ -333,12 +334,12 @@ module s6_two_channel_frame_buffer (
     always @* assume (!take | ready);
     wire f_settles = writing & f_closed & (cycle_at == 4'd0);
     always @* begin
-        `FORMAL_LABEL(never_overwritten) assert (!writing | ({1'b0, f_waits} + {1'b0, f_frame} <= {1'b0, MASK}));
-        `FORMAL_LABEL(never_overwritten_frame) assert (f_frame == (f_closed ? 13'd0 : {6'd0, at} + 13'd1));
-        `FORMAL_LABEL(never_overwritten_at) assert ((at[6:3] < TAIL_BLOCK) | ((at[6:3] == TAIL_BLOCK) & (!at[2] | (at[1:0] == 2'd0) | (!writing & (at[1:0] == 2'd1)))));
-        `FORMAL_LABEL(never_overwritten_used) assert (f_settles | (used >= f_waits));
-        `FORMAL_LABEL(never_overwritten_took) assert (used <= f_waits + {12'd0, took});
-        `FORMAL_LABEL(never_overwritten_room) assert (f_settles | (writing & f_closed & (cycle_at == 4'd1)) | (writing & !f_closed ? f_waits <= MOST_USED : !fits | (f_waits <= MOST_USED)));
+        `FORMAL_LABEL(never_overwritten) assert (HAS_OTHER_FRAMES | !writing | ({1'b0, f_waits} + {1'b0, f_frame} <= {1'b0, MASK}));
+        `FORMAL_LABEL(never_overwritten_frame) assert (HAS_OTHER_FRAMES | f_frame == (f_closed ? 13'd0 : {6'd0, at} + 13'd1));
+        `FORMAL_LABEL(never_overwritten_at) assert (HAS_OTHER_FRAMES | (at[6:3] < TAIL_BLOCK) | ((at[6:3] == TAIL_BLOCK) & (!at[2] | (at[1:0] == 2'd0) | (!writing & (at[1:0] == 2'd1)))));
+        `FORMAL_LABEL(never_overwritten_used) assert (HAS_OTHER_FRAMES | f_settles | (used >= f_waits));
+        `FORMAL_LABEL(never_overwritten_took) assert (HAS_OTHER_FRAMES | used <= f_waits + {12'd0, took});
+        `FORMAL_LABEL(never_overwritten_room) assert (HAS_OTHER_FRAMES | f_settles | (writing & f_closed & (cycle_at == 4'd1)) | (writing & !f_closed ? f_waits <= MOST_USED : !fits | (f_waits <= MOST_USED)));
     end
 `endif
 `undef FORMAL_LABEL
