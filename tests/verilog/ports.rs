@@ -7,7 +7,7 @@ use rtl_design::elaborate::Design;
 use rtl_design::engine::{Compiled, Engine, Keep, PortId};
 use std::collections::HashMap;
 
-/// Cycles of a block alone; of every subject, more, and in the campaign a million.
+/// Cycles of a block of the shipped card alone, and of a block of each subject. The campaign gives each a million.
 const QUICK_CYCLES: usize = 24_000;
 const ALL_CYCLES: usize = 100_000;
 
