@@ -281,6 +281,8 @@ pub fn report(project: &Project) -> Report {
             (card.safety.second_interface, "second_interface"),
             (card.safety.second_receiver, "second_receiver"),
             (card.safety.error_test_ms != 0, "error_test"),
+            (card.safety.upset_guards, "upset_guards"),
+            (card.safety.restore, "restore"),
         ]),
         error_test_ms: Some(card.safety.error_test_ms).filter(|ms| *ms != 0),
         bus: project.bus.name(),

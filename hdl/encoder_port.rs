@@ -17,6 +17,7 @@ use crate::endat::service::program::ServiceTimes;
 use crate::endat::service::{channel::ServiceChannel, Service};
 use crate::endat::transaction::cause;
 use crate::ports::*;
+use crate::protocols::ssi::asked::SsiSpec;
 use crate::protocols::ssi::port::SsiPort;
 use crate::protocols::t_format::port::TFormatPort;
 use crate::protocols::Spoken;
@@ -178,11 +179,11 @@ impl EncoderPort {
     ///
     /// # Panics
     /// For EnDat, whose ports have settings of their own.
-    pub fn speaking(protocol: Protocol, has_io: bool) -> Self {
+    pub fn speaking(protocol: Protocol, guards: bool, has_io: bool) -> Self {
         let mut others = Others::default();
         match protocol {
-            Protocol::TFormat => others.t_format.push(TFormatPort::default()),
-            Protocol::Ssi => others.ssi.push(SsiPort::default()),
+            Protocol::TFormat => others.t_format.push(TFormatPort::new(guards)),
+            Protocol::Ssi => others.ssi.push(SsiPort::new(&SsiSpec::default(), guards)),
             Protocol::Endat => panic!("EncoderPort::served makes ports for EnDat"),
         }
         Self::of(vec![], others, vec![], vec![], has_io)
@@ -192,12 +193,12 @@ impl EncoderPort {
     ///
     /// # Panics
     /// As [`Self::speaking`].
-    pub fn asked(spoken: &Spoken, has_io: bool) -> Self {
+    pub fn asked(spoken: &Spoken, guards: bool, has_io: bool) -> Self {
         let Spoken::Ssi(asked) = spoken else {
-            return Self::speaking(spoken.protocol(), has_io);
+            return Self::speaking(spoken.protocol(), guards, has_io);
         };
         let others = Others {
-            ssi: vec![SsiPort::new(asked)],
+            ssi: vec![SsiPort::new(asked, guards)],
             ..Others::default()
         };
         Self::of(vec![], others, vec![], vec![], has_io)

@@ -11,7 +11,7 @@
 use rtl_design::ports;
 use rust_hdl::prelude::*;
 
-/// Settings of one channel, as the host has written them.
+/// Settings of one channel, as the host has written them; constant while `busy`.
 #[ports]
 pub struct PortSettings {
     /// EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.

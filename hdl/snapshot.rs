@@ -6,9 +6,9 @@
 //! withdraw   ____________/\________    or: it has not; what was before comes back
 //! ```
 //!
-//! Where the position before is not kept, no position is valid after `withdraw`, until the next good one.
+//! With [`Withdrawal::Clears`] no position is valid after `withdraw`, until the next good one.
 //!
-//! What is held is guarded: its parity is taken when it has been loaded and compared in every cycle from then on. A register that
+//! With guards the parity of what is held is taken when it has been loaded, and compared in every cycle from then on. A register that
 //! was upset makes the position invalid, with a cause of its own.
 //!
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
@@ -53,6 +53,8 @@ pub struct Snapshot {
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
+    /// Strobe: what gave the position takes the one that is held in its place.
+    pub swap: Signal<Out, Bit>,
     strobe: Reg<Bit>,
     loaded: Reg<Bit>,
     held: Reg<Bits<48>>,
@@ -63,7 +65,6 @@ pub struct Snapshot {
     earlier_crc: Reg<Bits<5>>,
     earlier_width: Reg<Bits<6>>,
     earlier_f2: Reg<Bit>,
-    earlier_stamp: Reg<Bits<32>>,
     earlier_valid: Reg<Bit>,
     earlier_parity: Reg<Bit>,
     unconfirmed: Reg<Bit>,
@@ -72,7 +73,6 @@ pub struct Snapshot {
     moment_parity: Reg<Bit>,
     moment_sum: Reg<Bit>,
     is_upset: Reg<Bit>,
-    age_shown: Reg<Bits<16>>,
     valid: Reg<Bit>,
     is_fresh: Reg<Bit>,
     count: Reg<Bits<16>>,
@@ -91,37 +91,41 @@ pub struct Snapshot {
     upset_now: Signal<Local, Bit>,
     moment_wrong: Signal<Local, Bit>,
     ago: Signal<Local, Bits<11>>,
-    keeps_earlier: Constant<Bit>,
+    age_now: Signal<Local, Bits<16>>,
+    has_guards: Constant<Bit>,
+    restores: Constant<Bit>,
+    swaps: Constant<Bit>,
+    keeps: Constant<Bit>,
     never_withdraws: Constant<Bit>,
     upset_cause: Constant<Bits<5>>,
     upset_flag: Constant<Bits<20>>,
 }
 
+/// What becomes of a published position that the encoder withdraws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Withdrawal {
+    /// The position before it comes back, with its time stamp; it is kept here meanwhile.
+    Restores,
+    /// The same, but the receiver's word keeps it: the two change places.
+    Swaps,
+    /// No position is valid.
+    Clears,
+    /// The protocol withdraws none: everything that is wrong is known when the result comes.
+    Never,
+}
+
 impl Snapshot {
-    /// For a protocol with this cause and this flag for what is stored and was upset.
-    pub fn new(upset_cause: u64, upset_flag: u64) -> Self {
-        Self::keeping(true, false, upset_cause, upset_flag)
-    }
-
-    /// The same without the position before: `withdraw` leaves none.
-    pub fn without_earlier(upset_cause: u64, upset_flag: u64) -> Self {
-        Self::keeping(false, false, upset_cause, upset_flag)
-    }
-
-    /// The same for a protocol that never withdraws a position: all that is wrong is known when the result comes.
-    pub fn without_withdrawal(upset_cause: u64, upset_flag: u64) -> Self {
-        Self::keeping(false, true, upset_cause, upset_flag)
-    }
-
-    fn keeping(
-        keeps_earlier: bool,
-        never_withdraws: bool,
-        upset_cause: u64,
-        upset_flag: u64,
-    ) -> Self {
+    /// For a protocol with this cause and this flag for a stored bit that was upset; `guards` look for such bits.
+    pub fn new(withdrawal: Withdrawal, guards: bool, upset_cause: u64, upset_flag: u64) -> Self {
         Self::from_parts(SnapshotParts {
-            keeps_earlier: Constant::new(keeps_earlier),
-            never_withdraws: Constant::new(never_withdraws),
+            has_guards: Constant::new(guards),
+            restores: Constant::new(matches!(
+                withdrawal,
+                Withdrawal::Restores | Withdrawal::Swaps
+            )),
+            swaps: Constant::new(withdrawal == Withdrawal::Swaps),
+            keeps: Constant::new(withdrawal == Withdrawal::Restores),
+            never_withdraws: Constant::new(withdrawal == Withdrawal::Never),
             upset_cause: Constant::new(upset_cause.into()),
             upset_flag: Constant::new(upset_flag.into()),
         })
@@ -138,31 +142,40 @@ impl Logic for Snapshot {
         }
         // Of the cycle before: the sum of all its bits is too long a way to what loads.
         self.moment_sum.d.next = self.moment.q.val().xor();
-        self.moment_wrong.next = self.told.good.val()
+        self.moment_wrong.next = self.has_guards.val()
+            & self.told.good.val()
             & !self.timed.q.val()
             & (self.moment_sum.q.val() ^ self.moment_parity.q.val());
         self.take_good.next =
             self.told.publish.val() & self.told.good.val() & !self.moment_wrong.val();
         self.take_back.next =
-            self.told.withdraw.val() & (self.unconfirmed.q.val() | !self.keeps_earlier.val());
+            self.told.withdraw.val() & (self.unconfirmed.q.val() | !self.restores.val());
         self.ago.next = 0.into();
         if self.latched.val() {
             self.ago.next = self.delay_cycles.val();
         }
+        // Between a result and the end of its frame `moment` keeps the time stamp of the position before.
+        if self.restores.val() & self.take_good.val() {
+            self.moment.d.next = self.stamp.q.val();
+        }
         if self.first_fall.val() | self.latched.val() {
             self.moment.d.next = self.timestamp.val() - bit_cast::<32, 11>(self.ago.val());
         }
-        // The age of the position before goes on until the new one is sure; a row of withdrawn ones must not look young.
+        // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look young.
         self.age_full.d.next = self.age.q.val().all();
         if self.tick_us.val() & !self.age_full.q.val() {
             self.age.d.next = self.age.q.val() + 1;
         }
-        if self.told.confirm.val() & self.unconfirmed.q.val() {
+        self.age_now.next = self.age.q.val();
+        if self.restores.val() & self.unconfirmed.q.val() {
+            self.age_now.next = 0.into();
+        }
+        if self.unconfirmed.q.val() & (self.told.confirm.val() | !self.restores.val()) {
             self.age.d.next = 0.into();
         }
-        self.age_shown.d.next = self.age.q.val();
-        self.age_shown.reset.next =
-            self.reset.val() | self.unconfirmed.q.val() | self.take_good.val();
+        if !self.restores.val() & self.take_good.val() {
+            self.age.d.next = 0.into();
+        }
         self.strobe.d.next = self.told.publish.val();
         if self.told.publish.val() {
             self.is_fresh.d.next = self.told.good.val() & !self.moment_wrong.val();
@@ -178,14 +191,17 @@ impl Logic for Snapshot {
             self.held_f2.d.next = self.has_f2_in.val();
             self.stamp.d.next = self.moment.q.val();
             self.valid.d.next = true;
-            if self.keeps_earlier.val() {
-                self.earlier.d.next = self.held.q.val();
-                self.earlier_crc.d.next = self.held_crc.q.val();
+            if self.restores.val() {
+                if self.keeps.val() {
+                    self.earlier.d.next = self.held.q.val();
+                    self.earlier_crc.d.next = self.held_crc.q.val();
+                }
                 self.earlier_width.d.next = self.held_width.q.val();
                 self.earlier_f2.d.next = self.held_f2.q.val();
-                self.earlier_stamp.d.next = self.stamp.q.val();
                 self.earlier_valid.d.next = self.valid.q.val();
-                self.earlier_parity.d.next = self.parity.q.val();
+                if self.has_guards.val() {
+                    self.earlier_parity.d.next = self.parity.q.val();
+                }
             }
         }
         if self.told.confirm.val() | self.take_back.val() {
@@ -203,23 +219,30 @@ impl Logic for Snapshot {
             ^ self.held_crc.q.val().xor()
             ^ self.held_width.q.val().xor()
             ^ self.held_f2.q.val();
-        self.is_upset.d.next = (self.parity_now.val() ^ self.parity.q.val())
+        self.is_upset.d.next = self.has_guards.val()
+            & (self.parity_now.val() ^ self.parity.q.val())
             & !self.loaded.q.val()
             & !self.take_good.val()
             & !self.take_back.val();
-        if self.loaded.q.val() {
+        if self.has_guards.val() & self.loaded.q.val() {
             self.parity.d.next = self.parity_now.val();
             self.is_upset.d.next = self.stamp_sum.val() ^ self.moment_parity.q.val();
         }
         if self.take_back.val() {
-            if self.keeps_earlier.val() {
-                self.held.d.next = self.earlier.q.val();
-                self.held_crc.d.next = self.earlier_crc.q.val();
+            if self.restores.val() {
+                self.held.d.next = self.position_in.val();
+                self.held_crc.d.next = self.crc_received_in.val();
+                if self.keeps.val() {
+                    self.held.d.next = self.earlier.q.val();
+                    self.held_crc.d.next = self.earlier_crc.q.val();
+                }
                 self.held_width.d.next = self.earlier_width.q.val();
                 self.held_f2.d.next = self.earlier_f2.q.val();
-                self.stamp.d.next = self.earlier_stamp.q.val();
+                self.stamp.d.next = self.moment.q.val();
                 self.valid.d.next = self.earlier_valid.q.val();
-                self.parity.d.next = self.earlier_parity.q.val();
+                if self.has_guards.val() {
+                    self.parity.d.next = self.earlier_parity.q.val();
+                }
             } else {
                 self.valid.d.next = false;
             }
@@ -240,13 +263,14 @@ impl Logic for Snapshot {
             self.cause_held.d.next = self.upset_cause.val();
             self.flags_held.d.next = self.told.flags_told.val() | self.upset_flag.val();
         }
+        self.swap.next = self.swaps.val() & self.take_good.val();
         self.result.result_strobe.next = self.strobe.q.val();
         self.result.position.next = self.held.q.val();
         self.result.position_valid.next = self.valid.q.val();
         self.result.fresh.next = self.is_fresh.q.val();
         self.result.sequence.next = self.count.q.val();
         self.result.first_fall_timestamp.next = self.stamp.q.val();
-        self.result.age_us.next = self.age_shown.q.val();
+        self.result.age_us.next = self.age_now.val();
         self.result.cause.next = self.cause_held.q.val();
         self.result.flags.next = self.flags_held.q.val();
         self.result.crc_received.next = self.received.q.val();

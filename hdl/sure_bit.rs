@@ -1,11 +1,11 @@
-//! Sure bit: a flag that one upset does not set.
+//! Sure bit: a flag that, with guards, one upset does not set.
 //!
 //! ```text
 //! raise    __/\__________________
 //! clear    ____________/\________
 //! yes      ____/~~~~~~~~~\_______
 //! no       ~~~~\_________/~~~~~~~
-//! is_set   ____/~~~~~~~~~\_______    yes and not no; both alike: an upset, and it is clear again
+//! is_set   ____/~~~~~~~~~\_______    yes and not no; both alike: an upset, and it is clear again (without guards: yes)
 //! ```
 //!
 //! For what would begin something that nobody has asked for: a request sent once more, a clock that goes on.
@@ -14,7 +14,7 @@ use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// A flag in two registers.
+/// A flag.
 #[derive(LogicBlock, Block)]
 pub struct SureBit {
     /// System clock.
@@ -30,12 +30,22 @@ pub struct SureBit {
     yes: Reg<Bit>,
     #[start(true)]
     no: Reg<Bit>,
+    has_guards: Constant<Bit>,
+}
+
+impl SureBit {
+    /// In two registers with guards, in one without.
+    pub fn new(guards: bool) -> Self {
+        Self::from_parts(SureBitParts {
+            has_guards: Constant::new(guards),
+        })
+    }
 }
 
 #[kernel]
 impl Logic for SureBit {
     fn update(&mut self) {
-        if self.clear.val() | (self.yes.q.val() == self.no.q.val()) {
+        if self.clear.val() | (self.has_guards.val() & (self.yes.q.val() == self.no.q.val())) {
             self.yes.d.next = false;
             self.no.d.next = true;
         }
@@ -43,7 +53,7 @@ impl Logic for SureBit {
             self.yes.d.next = true;
             self.no.d.next = false;
         }
-        self.is_set.next = self.yes.q.val() & !self.no.q.val();
+        self.is_set.next = self.yes.q.val() & !(self.has_guards.val() & self.no.q.val());
     }
 }
 
@@ -54,7 +64,7 @@ mod tests {
 
     /// A bit with these registers, one clock edge later.
     fn after(yes: bool, no: bool, set: bool, clear: bool) -> (bool, bool) {
-        let mut block = SureBit::default();
+        let mut block = SureBit::new(true);
         block.connect_all();
         block.yes.q.next = yes;
         block.no.q.next = no;

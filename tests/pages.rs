@@ -1,7 +1,7 @@
 //! Pages: figures in the documentation are those of the program.
 
 use crate::tools;
-use endat_gen::area::{GUARDS, ICE40, XC6S};
+use endat_gen::area::{ICE40, XC6S};
 use endat_hdl::config::{needed_baud, read_bytes, CHANNELS};
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand;
@@ -152,19 +152,6 @@ fn the_sizes_are_those_of_the_area_table() {
     let monitors = monitors.map(|subject| area(subject, XC6S.name));
     let all = |kind: usize| monitors.map(|m| m[kind].to_string()).join("; ");
     page.cells("| for a safe control", &[all(0), all(1)]);
-    page.check();
-}
-
-/// What synthesis saves without it.
-#[test]
-fn the_costs_of_the_guards_are_those_of_the_area_table() {
-    let mut page = Figures::of("docs/decisions.md");
-    let [lut, ff] = area("channel", XC6S.name);
-    for guard in GUARDS {
-        let [less_lut, less_ff] = area(guard.name, XC6S.name);
-        let saved = [lut - less_lut, ff - less_ff].map(|n| n.to_string());
-        page.cells(&format!("| {} |", guard.title), &saved);
-    }
     page.check();
 }
 

@@ -116,6 +116,7 @@ impl Builder {
             depends.entry(net).or_default().extend(sources);
         }
         let through = draft.through(&depends);
+        draft.select_texts()?;
         draft.drop_unused_nets();
         draft.check_names()?;
         // The same block type with the same parameters gives the same module.

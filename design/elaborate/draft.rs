@@ -3,6 +3,7 @@
 use super::design::*;
 use super::names::{problem_of_net, verilog_name};
 use super::plan::{Dependencies, PlanError};
+use super::properties::selected;
 use super::scope::{child_port, Symbol};
 use super::tree::BlockNode;
 use super::words::{emitted_name, keyword_in_properties};
@@ -219,6 +220,31 @@ impl Draft<'_> {
                 "assign a default at the top of the kernel (a match on an enum may have unused encodings)",
             ),
         }
+    }
+
+    /// Leaves out what comments and properties say of parts that this block does not have.
+    pub(super) fn select_texts(&mut self) -> Result<()> {
+        let module = &self.module;
+        let is_set = |name: &str| {
+            let mut constants = module.parameters.iter();
+            let found = constants.find(|c| c.name.eq_ignore_ascii_case(name));
+            found.map(|c| c.value != 0)
+        };
+        let unknown = |line: &str| {
+            let problem = "the block has no constant of this name";
+            self.block.error(line, problem, "name one of its constants")
+        };
+        let properties =
+            selected(module.properties.lines(), ("// ", ""), is_set).map_err(unknown)?;
+        let lines = module.docs.iter().map(String::as_str);
+        let docs = selected(lines, ("<!-- ", " -->"), is_set).map_err(unknown)?;
+        let mut text = properties.join("\n");
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        let docs = docs.into_iter().map(str::to_owned).collect();
+        (self.module.properties, self.module.docs) = (text, docs);
+        Ok(())
     }
 
     /// For each output port, the input ports that it depends on combinationally.

@@ -4,7 +4,8 @@
 //! It begins with a line for each property, `// name: words`, or `// name unless CONSTANT (what it is), ...: words` where it is not claimed
 //! of a block in which one of these constants is not 0; assertions are labelled with the name of theirs, lemmas that it takes with
 //! `name_lemma`. What follows `` `ifdef FORMAL_ANY_STATE `` holds whatever the registers begin with, and is proved apart. Registers
-//! that only a proof has begin with `f_`.
+//! that only a proof has begin with `f_`. What stands between the lines `// with CONSTANT`, or `// without CONSTANT`, and `// end` is left
+//! out of a block in which the constant is 0, or is not.
 
 use super::Module;
 use std::collections::BTreeSet;
@@ -66,6 +67,19 @@ impl Property {
 /// The condition below which properties of any state stand.
 pub const ANY_STATE: &str = "FORMAL_ANY_STATE";
 
+/// The name of the line that says which inputs are assumed to be less than anything.
+const INPUTS: &str = "inputs";
+
+/// What is assumed of the inputs of a block with this text, if anything: its line `// inputs: words`.
+pub fn inputs(text: &str) -> Option<&str> {
+    let mut lines = text.lines();
+    lines.find_map(|line| {
+        line.strip_prefix("// ")?
+            .strip_prefix(INPUTS)?
+            .strip_prefix(": ")
+    })
+}
+
 /// The properties of a text.
 pub fn properties(text: &str) -> Vec<Property> {
     let labels: Vec<&str> = text.lines().flat_map(labels).collect();
@@ -82,7 +96,7 @@ pub fn properties(text: &str) -> Vec<Property> {
             continue;
         };
         let (name, unless) = name.split_once(" unless ").unwrap_or((name, ""));
-        if !is_name(name) {
+        if !is_name(name) || name == INPUTS {
             continue;
         }
         found.push(Property {
@@ -99,6 +113,33 @@ pub fn properties(text: &str) -> Vec<Property> {
         }
     }
     found
+}
+
+/// The lines of a text that a block with these constants has: `open` and `close` are what stands around `with NAME`, `without NAME` and `end`.
+///
+/// # Errors
+/// The line that names a constant which the block does not have.
+pub(super) fn selected<'a>(
+    lines: impl Iterator<Item = &'a str>,
+    (open, close): (&str, &str),
+    is_set: impl Fn(&str) -> Option<bool>,
+) -> Result<Vec<&'a str>, &'a str> {
+    let mut shown = true;
+    let mut found = vec![];
+    for line in lines {
+        let mark = line.trim().strip_prefix(open);
+        let mark = mark.and_then(|rest| rest.strip_suffix(close));
+        let mut words = mark.unwrap_or_default().split(' ');
+        match (words.next(), words.next(), words.next()) {
+            (Some("end"), None, _) => shown = true,
+            (Some(with @ ("with" | "without")), Some(name), None) => {
+                shown = is_set(name).ok_or(line)? == (with == "with");
+            }
+            _ if shown => found.push(line),
+            _ => {}
+        }
+    }
+    Ok(found)
 }
 
 /// `CONSTANT (what it is)`.

@@ -4,13 +4,11 @@
 
 mod cells;
 pub mod flows;
-mod guard;
 mod report;
 mod speed;
 mod subject;
 
 pub use cells::{logic_cells, Packed};
-pub use guard::{Guard, GUARDS};
 pub use report::{report, Line, Peer, Report, PEERS};
 pub use speed::{speed, Device, Speed, DEVICES};
 pub use subject::{subjects, Subject};

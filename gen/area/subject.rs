@@ -1,6 +1,5 @@
 //! What is measured: the card of the preset, one channel, and some of its blocks.
 
-use super::guard::{Guard, GUARDS};
 use crate::artifact::Artifact;
 use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
@@ -18,7 +17,7 @@ use endat_hdl::card::Card;
 use endat_hdl::config::CardConfig;
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::endat::channel::{Channel, Features, FixedTimes};
-use endat_hdl::endat::crc5::{Crc5Check, Crc5Fixed, Crc5Serial};
+use endat_hdl::endat::crc5::{Crc5Check, Crc5Fixed, Crc5Word};
 use endat_hdl::endat::line_delay::LineDelay;
 use endat_hdl::endat::line_monitor::LineStart;
 use endat_hdl::endat::receiver::Receiver;
@@ -30,10 +29,9 @@ use endat_hdl::protocols::t_format::{
     dsp::{AsyncDsp, TFormatStart},
     port::TFormatPort,
 };
-use endat_hdl::snapshot::Snapshot;
+use endat_hdl::snapshot::{Snapshot, Withdrawal};
 use endat_regs::Protocol;
-use rtl_design::elaborate::{block_name, elaborate, Design};
-use rtl_design::verilog::file_name;
+use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 
 /// A design whose area is measured.
@@ -45,8 +43,6 @@ pub struct Subject {
     pub title: &'static str,
     /// The design.
     pub design: Design,
-    /// What is taken out of it.
-    pub without: Option<Guard>,
 }
 
 impl Subject {
@@ -61,28 +57,12 @@ impl Subject {
             name,
             title,
             design,
-            without: None,
-        })
-    }
-
-    fn without(guard: Guard, block: impl Block) -> Result<Self, GenError> {
-        Ok(Self {
-            without: Some(guard),
-            ..Self::new(guard.name, guard.title, block)?
         })
     }
 
     /// Its Verilog.
     pub fn files(&self) -> Vec<Artifact> {
-        let mut files = sources::untitled(&self.design);
-        for (block, from, to) in self.without.iter().flat_map(|guard| guard.edits) {
-            let path = file_name(&block_name(self.name, block));
-            let file = files.iter_mut().find(|file| file.path == path);
-            let file = file.unwrap_or_else(|| panic!("{}: no {path}", self.name));
-            assert_eq!(file.text.matches(from).count(), 1, "{}: {from}", self.name);
-            file.text = file.text.replace(from, to);
-        }
-        files
+        sources::untitled(&self.design)
     }
 }
 
@@ -100,9 +80,6 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
     let mut subjects = cards(&card)?;
     subjects.extend(ports(times, card.system_hz)?);
     subjects.extend(parts(times, card.stream.fifo_bytes)?);
-    for guard in GUARDS {
-        subjects.push(Subject::without(guard, Channel::new(times))?);
-    }
     Ok(subjects)
 }
 
@@ -164,15 +141,25 @@ fn ports(times: FixedTimes, system_hz: u64) -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "async_dsp",
             "T-format receiver behind the bus of a signal processor",
-            AsyncDsp::new(&TFormatStart::default()),
+            AsyncDsp::new(&TFormatStart::default(), false),
         )?,
-        Subject::new("t_format", "T-format receiver", TFormatChannel::default())?,
+        Subject::new("t_format", "T-format receiver", TFormatChannel::new(false))?,
         Subject::new(
             "t_format_port",
             "one T-format port of a card",
-            TFormatPort::default(),
+            TFormatPort::new(false),
         )?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
+        Subject::new(
+            "channel_restore",
+            "the same that shows the position before again when one is withdrawn, as in a card",
+            Channel::with(times, part(|f| f.restore = true)),
+        )?,
+        Subject::new(
+            "channel_guards",
+            "the same with guards against upsets",
+            Channel::with(times, Features::GUARDED),
+        )?,
         Subject::new("port_all", "one port with everything", service(true))?,
         Subject::new(
             "port_service",
@@ -236,11 +223,7 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
             "propagation delay",
             LineDelay::new(Features::NONE),
         )?,
-        Subject::new(
-            "receiver",
-            "receiver with both CRCs",
-            Receiver::new(Features::default()),
-        )?,
+        Subject::new("receiver", "receiver", Receiver::new(Features::default()))?,
         Subject::new(
             "stream",
             "stream with a buffer of 2048 bytes, without the channels' parts",
@@ -249,7 +232,7 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "set_channel",
             "a channel's part of it",
-            SetChannel::new(0, Protocol::Endat, false, SetParts::default()),
+            SetChannel::new(0, Protocol::Endat, false, SetParts::default(), false),
         )?,
         Subject::new(
             "direct_output",
@@ -280,18 +263,27 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "snapshot",
             "snapshot with time stamp",
-            Snapshot::new(cause::UPSET, cause::flag(cause::UPSET)),
+            Snapshot::new(
+                Withdrawal::Restores,
+                false,
+                cause::UPSET,
+                cause::flag(cause::UPSET),
+            ),
         )?,
         Subject::new(
             "crc5_parallel",
             "CRC5, parallel, any length to 50 bits",
-            Crc5Check::default(),
+            Crc5Word::default(),
         )?,
         Subject::new(
             "crc5_fixed_31",
             "CRC5, parallel, 31 bits",
             Crc5Fixed::<31>::default(),
         )?,
-        Subject::new("crc5_serial", "CRC5, serial", Crc5Serial::default())?,
+        Subject::new(
+            "crc5_stored",
+            "CRC5 of the stored word, the guard beside it",
+            Crc5Check::default(),
+        )?,
     ])
 }

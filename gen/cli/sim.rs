@@ -142,7 +142,7 @@ fn run_t_format(arguments: &SimArgs) -> Result<Outcome, GenError> {
             t_format::NAME
         )));
     }
-    let mut block = EncoderPort::speaking(Protocol::TFormat, false);
+    let mut block = EncoderPort::speaking(Protocol::TFormat, false, false);
     block.connect_all();
     let design = elaborate(&block, "encoder_port").map_err(|e| fault(&e))?;
     let engine = Compiled::new(&design).map_err(|e| fault(&e))?;

@@ -12,6 +12,9 @@ use sha2::{Digest, Sha256};
 /// What the resolved configuration says of a device that has no initial values.
 pub const NO_INITIAL_VALUES: &str = "device initial_values false";
 
+/// What it says of stored bits that are checked.
+pub const UPSET_GUARDS: &str = "safety upset_guards";
+
 /// Bytes of the hash.
 const HASH_BYTES: usize = 6;
 
@@ -77,6 +80,8 @@ pub fn of_card(
         second_interface,
         second_receiver,
         error_test_ms,
+        upset_guards,
+        restore,
     } = safety;
     if *recovery_counter {
         lines.push("safety recovery_counter".into());
@@ -89,6 +94,12 @@ pub fn of_card(
     }
     if *error_test_ms > 0 {
         lines.push(format!("safety error_test_ms {error_test_ms}"));
+    }
+    if *upset_guards {
+        lines.push(UPSET_GUARDS.into());
+    }
+    if *restore {
+        lines.push("safety restore".into());
     }
     if !initial_values {
         lines.push(NO_INITIAL_VALUES.into());

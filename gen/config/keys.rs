@@ -162,6 +162,10 @@ keys! {
         .one_of(|| parts(&SAFETY)).of(CARD_FORM);
     ERROR_TEST_PERIOD = Key::number(&["safety"], "error_test_ms", "time between two forced errors of a channel")
         .note("the host can change it (0 = none)").takes("error_test").of(CARD_FORM).usual(Usual::Number(ERROR_TEST_MS as u64));
+    UPSET_GUARDS = Key::boolean(&["safety"], "upset_guards", "whether stored bits are checked, so that an upset of a register shows ([safety.md](safety.md#guards-against-upsets))")
+        .note("with `\"dsp\"`, too").usual(Usual::Boolean(false));
+    RESTORE = Key::boolean(&["safety"], "restore", "whether a port without bus shows the position before again when the encoder withdraws one")
+        .note("behind every bus but `\"none\"` it always does; otherwise no position is valid then").of(CARD_FORM).usual(Usual::Boolean(false));
 
     FIFO_BYTES = Key::number(&["stream"], "fifo_bytes", "buffer of the stream ([stream.md](stream.md))")
         .note("0 = no stream, no logic; `sample_hz` times the frame must fit the line")
@@ -230,7 +234,7 @@ pub const TABLES: &[(&str, &str)] = &[
     ("service", "what each channel does besides triggered positions"),
     ("line", "what each channel does about its line delay"),
     ("outputs", "outputs to logic in the same device"),
-    ("safety", "what watches each channel beside it"),
+    ("safety", "what watches each channel beside it, and checks of stored bits"),
     ("stream", "sets of all channels, one for each trigger, for a host that wants every position"),
     ("device", "what the device cannot do"),
     ("board", "the board: pins and clock manager"),

@@ -46,6 +46,10 @@ pub const PRESETS: &[(&str, &str)] = &[
         "s6_two_channel_service",
         include_str!("../presets/s6_two_channel_service.toml"),
     ),
+    (
+        "safe_two_channel",
+        include_str!("../presets/safe_two_channel.toml"),
+    ),
     ("clb_2mhz", include_str!("../presets/clb_2mhz.toml")),
     (
         "ti_three_channel",

@@ -1,12 +1,13 @@
 //! A T-format receiver: its keys, and what they come to.
 
-use super::canonical::{hash, NO_INITIAL_VALUES};
+use super::canonical::{hash, NO_INITIAL_VALUES, UPSET_GUARDS};
 use super::channel::read_encoder;
 use super::check_name;
 use super::device::read_initial_values;
 use super::document::parse;
 use super::keys::{tables, BUS, CARD_FORM, CHANNELS, KEYS, NAME, PROTOCOL, RECEIVER_FORM};
 use super::reader::{Source, Table};
+use super::safety::read_guards;
 use super::words::RECEIVER_BUS;
 use crate::form::key::Key;
 use crate::protocols::t_format::keys::{FIELD_GAP_US, FILTER_CYCLES, REPLY_GAP_US};
@@ -27,6 +28,8 @@ pub struct Receiver {
     pub start: TFormatStart,
     /// The device gives registers their start values when it is configured.
     pub initial_values: bool,
+    /// Stored bits are checked.
+    pub upset_guards: bool,
     /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
     pub hash: String,
 }
@@ -86,8 +89,14 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
     }
     let device = root.table("device", &empty);
     let initial_values = read_initial_values(&device);
+    let safety = root.table("safety", &empty);
+    let upset_guards = read_guards(&safety);
     // A second channel is refused as a whole.
-    for table in channels.iter().take(1).chain([&host, &device, &root]) {
+    for table in channels
+        .iter()
+        .take(1)
+        .chain([&host, &safety, &device, &root])
+    {
         table.finish();
     }
     let (encoder, start) = channel?;
@@ -96,6 +105,9 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
         start.word(),
         start.request_id
     );
+    if upset_guards {
+        canonical += &format!("\n{UPSET_GUARDS}");
+    }
     if !initial_values {
         canonical += &format!("\n{NO_INITIAL_VALUES}");
     }
@@ -104,6 +116,7 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
         encoder,
         start,
         initial_values,
+        upset_guards,
         hash: hash(&canonical),
     })
 }

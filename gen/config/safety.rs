@@ -1,6 +1,6 @@
 //! The table `[safety]`.
 
-use super::keys::{ERROR_TEST_PERIOD as PERIOD, SAFETY_PARTS as PARTS};
+use super::keys::{ERROR_TEST_PERIOD as PERIOD, RESTORE, SAFETY_PARTS as PARTS, UPSET_GUARDS};
 use super::parts::read_parts;
 use super::reader::Table;
 use endat_hdl::card::bus::HostBus;
@@ -35,9 +35,20 @@ impl Around {
     }
 }
 
+/// Whether stored bits are checked.
+pub fn read_guards(table: &Table<'_, '_>) -> bool {
+    table.boolean(&UPSET_GUARDS).is_some_and(|at| at.value)
+}
+
 /// Reads the table; `None` if something is wrong.
 pub fn read(table: &Table<'_, '_>, around: Around) -> Option<SafetyParts> {
-    let mut parts = SafetyParts::default();
+    // A card with registers always restores.
+    let restores = table.boolean(&RESTORE).is_some_and(|at| at.value);
+    let mut parts = SafetyParts {
+        upset_guards: read_guards(table),
+        restore: restores && around.bus == Some(HostBus::Bare),
+        ..SafetyParts::default()
+    };
     let mut tests = false;
     let marks = &mut [
         &mut parts.recovery_counter,

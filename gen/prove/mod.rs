@@ -32,7 +32,7 @@ use crate::language::Language;
 use crate::readers::is_core;
 use crate::scratch;
 use endat_sim::diagram::waves_svg;
-use rtl_design::elaborate::properties::{of_label, properties, Begins, Property};
+use rtl_design::elaborate::properties::{inputs, of_label, properties, Begins, Property};
 use rtl_design::elaborate::{Design, Module};
 use rtl_design::verilog::as_printed;
 use std::collections::BTreeSet;
@@ -214,8 +214,8 @@ fn prove_part(
     let mut report = PartReport {
         module: module.name.clone(),
         inputs: match claim {
-            Some(claim) if blocks.is_empty() => claim.inputs,
-            _ => ANYTHING,
+            Some(claim) if blocks.is_empty() => claim.inputs.into(),
+            _ => inputs(&module.properties).unwrap_or(ANYTHING).into(),
         },
         start_seconds: 0.0,
         anywhere_seconds: 0.0,

@@ -18,7 +18,7 @@ It prints the table below for your card, exits with 1 when a property does not h
 The properties stand at the end of their modules below `` `ifdef FORMAL ``, so other provers can read them, too; simulators and synthesis never see them.
 
 **What a proof says.** A part of the card, an EnDat channel with all its blocks for instance, is proved by itself, and every input of it may be anything in every cycle: DATA, triggers,
-reset, and all settings, legal or not. *From the start values* means: after configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any
+reset, and all settings, legal or not. Without [guards](safety.md#guards-against-upsets) the settings of a channel stay while it is busy and in the cycle of a trigger: `settings_stay` proves that of a card's registers, and a port without bus asks it of your design. *From the start values* means: after configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any
 state* means: whatever the registers hold, for instance after an upset. The properties of a part are proved together, so one may lean on another in the cycles before. `known_after_reset` stands in no module: it is looked at in the gates of a channel as it is synthesised. That the cause is the one of the highest rank, whatever happened at once, is proved by the suite, for all flags (`tests/verilog/formal.rs`).
 
 The front of AXI4-Lite, APB, Wishbone or AHB-Lite is proved for every master within the rules of its bus, with a bank that answers each access within four cycles; `holds_inside` is what the induction needs of the blocks inside it.
@@ -30,10 +30,10 @@ The last table of the command has every module of your card, with its properties
 **What it does not say.** What stands in that table without a part is simulated only: services, line monitor, direct outputs, recovery counter, second interface, trigger timers, the fronts of SPI and of the parallel bus. A property that
 says nothing of your card is told as *no claim*, with the part of the card that it is not about. A frame that carries a request, additional data or a supplement is not all position. `crc16_as_sent` takes for
 granted that a byte of a set, once it is there, stays until it has been written, as the port says; `never_overwritten` that a byte is taken only where one is; `stored_apart` that an exchange ends four cycles behind the one before at least. `first_word_as_sent` is about the first word of a command, while no access of an earlier one
-is under way; `request_as_asked` about a request ID that stays as long as the exchange lasts; `cells_timed` about bits of four cycles and more.
+is under way; `request_as_asked` about a request ID that stays as long as the exchange lasts; `cells_timed` about bits of four cycles and more. `restored` is about a position that is withdrawn before the next frame begins; in a card without requests the receiver's word keeps the position before, and `word_kept` is about a word that it is given at rest.
 
 **Found on the way**, and mended: a position frame refused behind the frame that measures had two results; a frame given up in the cycle of its last bit had two, too; a refused trigger took the
-result of the next one. With the diagnosis, a trigger lost while the delay was measured was forgotten where that frame's recovery time was too short. A byte that was read in the very cycle in which an answer timed out met the next command: if that one wrote, a word was written that nobody had sent.
+result of the next one. With the diagnosis, a trigger lost while the delay was measured was forgotten where that frame's recovery time was too short. A frame that measures the delay and is given up in the very cycle behind its verdict withdrew a position that had not been published, and its trigger had no result until the next one. A byte that was read in the very cycle in which an answer timed out met the next command: if that one wrote, a word was written that nobody had sent.
 
 Each property refuses cores that are broken on purpose: `tests/prove/mutations.rs`.
 ";

@@ -105,7 +105,7 @@ pub struct PartReport {
     /// Its module.
     pub module: String,
     /// The inputs that the proof allows.
-    pub inputs: &'static str,
+    pub inputs: String,
     /// Time for the properties that begin with the start values.
     pub start_seconds: f64,
     /// Time for those of any state.

@@ -93,7 +93,7 @@ fn smt2(
         false => "",
     };
     let script = format!(
-        "{first}read_verilog -formal -sv -DFORMAL {define}{}; {then}prep -top {TOP} -flatten -nordff; {free}async2sync; dffunmap; \
+        "{first}read_verilog -formal -sv -DFORMAL {define}{}; {then}hierarchy -top {TOP}; proc -norom; prep -top {TOP} -flatten -nordff; {free}async2sync; dffunmap; \
          chformal -lower; opt_clean; write_smt2 -wires {file}",
         files.join(" ")
     );
@@ -222,7 +222,7 @@ pub(super) fn gates(
     top: &str,
     kept: &str,
 ) -> Result<String, GenError> {
-    let read = format!("-formal -noassert -DFORMAL {}", files.join(" "));
+    let read = format!("-formal -noassert -noassume -DFORMAL {}", files.join(" "));
     let flat = format!("setattr -set keep 1 w:*{kept}\nopt\nmemory_map");
     mapped(folder, &read, top, &flat)
 }

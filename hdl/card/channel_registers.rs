@@ -128,7 +128,7 @@ impl ChannelRegisters {
             word: each(RESULT_WORDS),
             shown: each(RESULT_WORDS),
             byte: each(RESULT_WORDS),
-            ring: ConfigRing::new(words),
+            ring: ConfigRing::new(words, config.safety.upset_guards),
             config0: active(0),
             config1: active(1),
             config2: active(2),
@@ -260,7 +260,8 @@ impl Logic for ChannelRegisters {
 
         connect!(self.ring <= self; turn = ring_turn, byte_in = ring_in);
         self.ring_out.next = self.ring.byte_out.val();
-        if self.ring_home.val() & !self.busy.val() {
+        // Not in the cycle of a trigger either: its frame has what was looked at when it was taken.
+        if self.ring_home.val() & !self.busy.val() & !self.trigger.val() {
             self.config0.d.next = self.ring.word0.val();
             self.config1.d.next = self.ring.word1.val();
             self.config2.d.next = self.ring.word2.val();

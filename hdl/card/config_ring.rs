@@ -9,7 +9,8 @@
 //! A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
 //! in place only while the ring stands still, so the blocks work from copies that are taken then.
 //!
-//! Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
+//! With guards each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is
+//! written again.
 
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -50,16 +51,18 @@ pub struct ConfigRing {
     #[given]
     parities: Reg<Bits<12>>,
     damaged: Reg<Bit>,
+    has_guards: Constant<Bit>,
 }
 
 impl ConfigRing {
     /// A block that holds `start` after reset.
-    pub fn new(start: [u32; RING_WORDS]) -> Self {
+    pub fn new(start: [u32; RING_WORDS], guards: bool) -> Self {
         let word = |value: u32| Reg::new(u64::from(value).into());
         let bytes = start.into_iter().flat_map(u32::to_be_bytes);
         let parities = bytes.fold(0, |all, byte| all << 1 | u64::from(byte.count_ones() & 1));
         Self::from_parts(ConfigRingParts {
-            parities: Reg::new(parities.into()),
+            has_guards: Constant::new(guards),
+            parities: Reg::new(if guards { parities } else { 0 }.into()),
             w0: word(start[0]),
             w1: word(start[1]),
             w2: word(start[2]),
@@ -77,9 +80,11 @@ impl Logic for ConfigRing {
                 (self.w1.q.val() << 8) | bit_cast::<32, 8>(self.w2.q.val().get_bits::<8>(24));
             self.w2.d.next =
                 (self.w2.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.val().get_bits::<8>(0));
-            self.parities.d.next = (self.parities.q.val() << 1)
-                | bit_cast::<12, 1>(self.byte_in.val().get_bits::<1>(8));
-        } else {
+            if self.has_guards.val() {
+                self.parities.d.next = (self.parities.q.val() << 1)
+                    | bit_cast::<12, 1>(self.byte_in.val().get_bits::<1>(8));
+            }
+        } else if self.has_guards.val() {
             self.damaged.d.next = self.w0.q.val().xor()
                 ^ self.w1.q.val().xor()
                 ^ self.w2.q.val().xor()

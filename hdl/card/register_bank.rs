@@ -153,6 +153,7 @@ pub struct RegisterBank {
     result_page: Signal<Local, Bit>,
     written: Signal<Local, Bits<8>>,
     head: Signal<Local, Bits<9>>,
+    has_guards: Constant<Bit>,
     rom_word: Signal<Local, Bits<32>>,
     has_service: Constant<Bit>,
     has_line: Constant<Bit>,
@@ -204,7 +205,8 @@ impl RegisterBank {
         Self::from_parts(RegisterBankParts {
             active_sources: Reg::new(u64::from(words[0] & 7).into()),
             active_period: Reg::new(u64::from(words[1]).into()),
-            ring: ConfigRing::new(words),
+            has_guards: Constant::new(config.safety.upset_guards),
+            ring: ConfigRing::new(words, config.safety.upset_guards),
             has_service: Constant::new(config.service.requests),
             has_line: Constant::new(config.line.alignment),
             has_others: Constant::new(other_channels != 0),

@@ -82,6 +82,10 @@ pub struct SafetyParts {
     pub second_interface: bool,
     /// A second receiver on the same samples, compared with the first.
     pub second_receiver: bool,
+    /// Stored bits are checked, so that an upset of a register shows.
+    pub upset_guards: bool,
+    /// A port without bus: a position that is withdrawn gives way to the one before it. With a bus it always does.
+    pub restore: bool,
     /// One forced error each so many milliseconds, whose cause is awaited; 0 = no schedule, and no program for it.
     pub error_test_ms: u16,
 }

@@ -12,8 +12,8 @@
 //! has a frame of its own. [`AddInfo`] keeps the record of the additional data that follow each position.
 //!
 //! The first frame after reset, after an aborted frame and after `calibrate` runs at the calibration clock and
-//! measures the propagation delay; all others run at the configured clock. A frame takes its settings over with its first falling
-//! edge; inputs that change later count for the next one.
+//! measures the propagation delay; all others run at the configured clock. Settings stay as they are while `busy`. With guards a frame
+//! takes a copy of them, and a setting that changes under way makes its position invalid.
 
 mod kernel;
 
@@ -31,8 +31,8 @@ use crate::endat::transaction::{cause, Transaction};
 use crate::input_filter::InputFilter;
 use crate::ports::*;
 use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
-use crate::several::{each, numbered};
-use crate::snapshot::Snapshot;
+use crate::several::numbered;
+use crate::snapshot::{Snapshot, Withdrawal};
 use crate::sure_bit::SureBit;
 use rtl_design::reg::Reg;
 use rtl_design::Block;
@@ -128,8 +128,7 @@ pub struct Channel {
     shape: CommandShape,
     wanted_shape: CommandShape,
     add_info: AddInfo,
-    #[start]
-    settings: FrameSettings,
+    settings: Vec<FrameSettings>,
     #[start(true)]
     clk_pin: Reg<Bit>,
     data_pin: Reg<Bit>,
@@ -139,6 +138,12 @@ pub struct Channel {
     ride_asked: Vec<SureBit>,
     own_wanted: Signal<Local, Bit>,
     ride_wanted: Signal<Local, Bit>,
+    command_set: Signal<Local, Bits<6>>,
+    width_set: Signal<Local, Bits<6>>,
+    filter_set: Signal<Local, Bits<4>>,
+    filter_half_set: Signal<Local, Bit>,
+    window_set: Signal<Local, Bits<6>>,
+    _guards: usize,
     _requests: usize,
     _seconds: usize,
     frame_command: Reg<Bits<6>>,
@@ -149,6 +154,7 @@ pub struct Channel {
     reply_word: Reg<Bits<48>>,
     reply_right: Reg<Bit>,
     reply_has_parameter: Reg<Bit>,
+    has_guards: Constant<Bit>,
     has_requests: Constant<Bit>,
     has_double: Constant<Bit>,
     needs_four: Constant<Bit>,
@@ -175,22 +181,35 @@ impl Channel {
     pub fn with(times: FixedTimes, features: Features) -> Self {
         let requests = usize::from(features.requests);
         let seconds = usize::from(features.second_receiver);
+        let guards = features.upset_guards;
         Self::from_parts(ChannelParts {
             filter: InputFilter::new(features),
             clock_gen: ClockGen::new(features),
             sender: CommandSender::new(features.requests),
             delay: LineDelay::new(features),
             receiver: Receiver::new(features),
-            snapshot: Snapshot::new(cause::UPSET, cause::flag(cause::UPSET)),
+            snapshot: Snapshot::new(
+                match features.restore {
+                    true if features.swaps() => Withdrawal::Swaps,
+                    true => Withdrawal::Restores,
+                    false => Withdrawal::Clears,
+                },
+                guards,
+                cause::UPSET,
+                cause::flag(cause::UPSET),
+            ),
+            settings: numbered(usize::from(guards), |_| FrameSettings::default()),
+            _guards: guards.into(),
             transaction: Transaction::new(times, features),
             shape: CommandShape::new(features.requests),
             wanted_shape: CommandShape::new(features.requests),
             add_info: AddInfo::new(times.separator_cycles),
             second: numbered(seconds, |_| SecondReceiver::new(features)),
-            own_asked: each(requests),
-            ride_asked: each(requests),
+            own_asked: numbered(requests, |_| SureBit::new(guards)),
+            ride_asked: numbered(requests, |_| SureBit::new(guards)),
             _requests: requests,
             _seconds: seconds,
+            has_guards: Constant::new(guards),
             has_requests: Constant::new(features.requests),
             has_double: Constant::new(features.double_edge),
             needs_four: Constant::new(features.double_edge && features.requests),

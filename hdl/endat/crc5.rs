@@ -1,4 +1,4 @@
-//! CRC5 of EnDat (x^5+x^3+x+1, preset 11111, inverted): parallel in two forms, and serial as the cross-check.
+//! CRC5 of EnDat (x^5+x^3+x+1, preset 11111, inverted), parallel: of an answer as it comes, of the stored word, and of a fixed length.
 //!
 //! Every form comes from one definition, the residues of powers of x. The order of x modulo the generator is 15,
 //! so what a bit contributes depends only on its distance from the last covered bit, modulo 15; zeros above the frame
@@ -56,7 +56,109 @@ pub fn parity_mask(crc_bit: usize, width: usize) -> u128 {
         .fold(0, |mask, i| mask | 1 << i)
 }
 
-/// Parallel CRC5 check of an answer whose width is known at run time only, over its word as it is stored: first bit at bit 0.
+/// Parallel CRC5 of a word whose last bit has just come in at place 4, 19, 34 or 49, with zeros below its first bit.
+///
+/// What a bit contributes depends on its distance from the last one, modulo 15; that one stands at place 4, modulo 15. So the word folded to
+/// 15 bits gives five parities that are the same for every width, and preset and inversion add one of 15 constants.
+#[derive(LogicBlock, Block)]
+pub struct Crc5Word {
+    /// The word, its last bit at one of the four places.
+    pub word: Signal<In, Bits<50>>,
+    /// Number of its bits modulo 15, 0..=14.
+    pub covered: Signal<In, Bits<4>>,
+    /// The CRC as it would be sent; bit 4 goes first.
+    pub crc: Signal<Out, Bits<5>>,
+    mask: Vec<Constant<Bits<15>>>,
+    weight: Vec<Constant<Bits<5>>>,
+    constant: Vec<Constant<Bits<5>>>,
+    folded: Signal<Local, Bits<15>>,
+    sum: Signal<Local, Bits<5>>,
+}
+
+/// Place of the last bit of a word as it comes in, modulo the order of x.
+const LAST_PLACE: usize = 4;
+
+impl Default for Crc5Word {
+    fn default() -> Self {
+        let distance = |place: usize| (LAST_PLACE + ORDER_OF_X - place) % ORDER_OF_X;
+        let mask = |crc_bit: usize| {
+            let bits = (0..ORDER_OF_X).filter(|i| contribution(distance(*i)) >> crc_bit & 1 == 1);
+            Constant::new(bits.fold(0u64, |mask, i| mask | 1 << i).into())
+        };
+        Self::from_parts(Crc5WordParts {
+            mask: (0..5).map(mask).collect(),
+            weight: crc_bit_weights(),
+            constant: (0..ORDER_OF_X)
+                .map(|covered| Constant::new(u64::from(constant_term(covered)).into()))
+                .collect(),
+        })
+    }
+}
+
+#[kernel]
+impl Logic for Crc5Word {
+    fn update(&mut self) {
+        self.folded.next = self.word.val().get_bits::<15>(0)
+            ^ self.word.val().get_bits::<15>(15)
+            ^ self.word.val().get_bits::<15>(30)
+            ^ bit_cast::<15, 5>(self.word.val().get_bits::<5>(45));
+        match self.covered.val().index() {
+            0 => {
+                self.sum.next = self.constant[0].val();
+            }
+            1 => {
+                self.sum.next = self.constant[1].val();
+            }
+            2 => {
+                self.sum.next = self.constant[2].val();
+            }
+            3 => {
+                self.sum.next = self.constant[3].val();
+            }
+            4 => {
+                self.sum.next = self.constant[4].val();
+            }
+            5 => {
+                self.sum.next = self.constant[5].val();
+            }
+            6 => {
+                self.sum.next = self.constant[6].val();
+            }
+            7 => {
+                self.sum.next = self.constant[7].val();
+            }
+            8 => {
+                self.sum.next = self.constant[8].val();
+            }
+            9 => {
+                self.sum.next = self.constant[9].val();
+            }
+            10 => {
+                self.sum.next = self.constant[10].val();
+            }
+            11 => {
+                self.sum.next = self.constant[11].val();
+            }
+            12 => {
+                self.sum.next = self.constant[12].val();
+            }
+            13 => {
+                self.sum.next = self.constant[13].val();
+            }
+            _ => {
+                self.sum.next = self.constant[14].val();
+            }
+        }
+        for i in 0..5 {
+            if (self.folded.val() & self.mask[i].val()).xor() {
+                self.sum.next = self.sum.val() ^ self.weight[i].val();
+            }
+        }
+        self.crc.next = self.sum.val();
+    }
+}
+
+/// Parallel CRC5 check of the stored word, first bit at bit 0, of any width: the guard beside [`Crc5Word`].
 ///
 /// A CRC counts distances from the last bit, the word from the first one. So both sides of the equation are divided by the power of x
 /// that lies between: the word's side becomes five fixed parities (folded to 15 bits, the order of x), and what the received CRC bits
@@ -219,56 +321,5 @@ impl<const N: usize> Logic for Crc5Fixed<N> {
             }
         }
         self.crc.next = self.sum.val();
-    }
-}
-
-/// Serial CRC5 register: takes the covered bits and then the received CRC itself.
-#[derive(LogicBlock, Block)]
-pub struct Crc5Serial {
-    /// System clock.
-    pub clock: Signal<In, Clock>,
-    /// Synchronous reset.
-    pub reset: Signal<In, Bit>,
-    /// Strobe: back to the preset.
-    pub clear: Signal<In, Bit>,
-    /// Strobe: take `bit`.
-    pub enable: Signal<In, Bit>,
-    /// The next bit, in the order received.
-    pub bit: Signal<In, Bit>,
-    /// The frame taken so far ends in its own, right CRC.
-    pub residue_ok: Signal<Out, Bit>,
-    /// CRC of the bits taken so far, as it would be sent; bit 4 goes first.
-    pub crc: Signal<Out, Bits<5>>,
-    #[start(u64::from(CRC5_PRESET).into())]
-    register: Reg<Bits<5>>,
-    shifted: Signal<Local, Bits<5>>,
-    polynomial: Constant<Bits<5>>,
-    residue: Constant<Bits<5>>,
-}
-
-impl Default for Crc5Serial {
-    fn default() -> Self {
-        Self::from_parts(Crc5SerialParts {
-            polynomial: Constant::new(u64::from(CRC5_POLYNOMIAL).into()),
-            residue: Constant::new(u64::from(crate::protocol::CRC5_RESIDUE).into()),
-        })
-    }
-}
-
-#[kernel]
-impl Logic for Crc5Serial {
-    fn update(&mut self) {
-        self.shifted.next = self.register.q.val() << 1;
-        if self.enable.val() {
-            self.register.d.next = self.shifted.val();
-            if self.register.q.val().get_bit(4) ^ self.bit.val() {
-                self.register.d.next = self.shifted.val() ^ self.polynomial.val();
-            }
-        }
-        if self.clear.val() {
-            self.register.d.next = 31.into();
-        }
-        self.residue_ok.next = self.register.q.val() == self.residue.val();
-        self.crc.next = !self.register.q.val();
     }
 }

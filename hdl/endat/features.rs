@@ -65,9 +65,19 @@ pub struct Features {
     pub double_edge: bool,
     /// A second receiver takes each answer, too, and is compared (not with `double_edge`).
     pub second_receiver: bool,
+    /// Stored bits are checked, so that an upset of a register shows.
+    pub upset_guards: bool,
+    /// A position that is withdrawn gives way to the one before it; without this no position is valid then.
+    pub restore: bool,
 }
 
 impl Features {
+    /// Whether the receiver's word keeps the position before while the encoder may withdraw the new one: it has no other use then, but for
+    /// additional data and for a comparison.
+    pub const fn swaps(self) -> bool {
+        self.restore && !self.requests && !self.second_receiver
+    }
+
     /// Triggered positions only.
     pub const NONE: Self = Self {
         requests: false,
@@ -77,13 +87,27 @@ impl Features {
         margin: false,
         double_edge: false,
         second_receiver: false,
+        upset_guards: false,
+        restore: false,
     };
 
-    /// Everything of the protocol.
+    /// The same as in a card: a position that is withdrawn gives way to the one before it.
+    pub const CARD: Self = Self {
+        restore: true,
+        ..Self::NONE
+    };
+
+    /// As in a card with guards.
+    pub const GUARDED: Self = Self {
+        upset_guards: true,
+        ..Self::CARD
+    };
+
+    /// Everything of the protocol, as in a card.
     pub const PROTOCOL: Self = Self {
         requests: true,
         diagnosis: true,
         continuous: true,
-        ..Self::NONE
+        ..Self::CARD
     };
 }

@@ -1,4 +1,4 @@
-//! Settings of a frame: the inputs as they were when it began.
+//! Settings of a frame, a guard: the inputs as they were when it began.
 //!
 //! ```text
 //! trigger     _____/\__________________________
@@ -7,7 +7,7 @@
 //! *_now       . A   B                  . C      the frame has those of the cycle with the trigger
 //! ```
 //!
-//! What decides where a position stands in the answer, command and width, is guarded: its parity is taken as the frame begins.
+//! The parity of command and width, which decide where a position is in the answer, is taken as the frame begins.
 
 use crate::endat::ports::FrameLimitsOut;
 use crate::ports::PortSettingsIn;

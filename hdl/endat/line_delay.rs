@@ -114,6 +114,7 @@ pub struct LineDelay {
     measured_now: Reg<Bit>,
     second: Reg<Bit>,
     edge_place: Reg<Bit>,
+    has_guards: Constant<Bit>,
     has_alignment: Constant<Bit>,
     has_double: Constant<Bit>,
     frame_mode: Constant<Bits<2>>,
@@ -144,6 +145,7 @@ impl LineDelay {
         Self::from_parts(LineDelayParts {
             half: HalfPeriod::new(features.alignment, features.double_edge),
             tracker: (0..trackers).map(|_| PhaseTracker::new(features)).collect(),
+            has_guards: Constant::new(features.upset_guards),
             has_alignment: Constant::new(features.alignment),
             has_double: Constant::new(features.double_edge),
             frame_mode: Constant::new(mode::FRAME.into()),
@@ -187,7 +189,7 @@ impl Logic for LineDelay {
         if self.has_double.val() {
             self.delay_now.next = self.places.val().get_bits::<11>(1);
         }
-        // The delay stands from frame to frame: it is guarded.
+        // The delay stays from frame to frame: a guard looks at it.
         self.moved.d.next = self.follow_now.q.val() | self.acquired.val();
         for i in 0..self._trackers {
             self.moved.d.next = self.tracker[i].moves.val();
@@ -196,7 +198,7 @@ impl Logic for LineDelay {
         if self.moved.q.val() {
             self.parity.d.next = self.parity_now.val();
         } else {
-            if self.parity_now.val() ^ self.parity.q.val() {
+            if self.has_guards.val() & (self.parity_now.val() ^ self.parity.q.val()) {
                 self.wrong.d.next = true;
             }
         }

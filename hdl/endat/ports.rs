@@ -156,10 +156,10 @@ pub struct AnswerCheck {
     pub f1: Bit,
     /// Error bit 2, low = alarm; high in frames without it.
     pub f2: Bit,
-    /// The serial register over the wire bits says the CRC is right.
-    pub serial_ok: Bit,
-    /// The stored word fits the received CRC, now.
-    pub parallel_ok: Bit,
+    /// The CRC of the bits as they came is the one received.
+    pub crc_ok: Bit,
+    /// The word as it is stored now fits the received CRC; without guards as `crc_ok`.
+    pub stored_ok: Bit,
 }
 
 /// What has become of a frame.

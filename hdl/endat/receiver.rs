@@ -11,17 +11,19 @@
 //! cells are only counted.
 //!
 //! The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
-//! with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
-//! then stands, and for as long as it stands there: what is published is what was checked.
+//! with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word before
+//! that: at all four places its last bit has the same distance from a multiple of 15.
 //! `left` counts cells down to the end of the frame, `to_send` the clock pulses that they need: the difference is under way. The
 //! clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
-//! shortest answer while its start bit may still be on the cable. `under_way` counts the difference once more: at the end of the
-//! frame all three agree, unless one was upset.
+//! shortest answer while its start bit may still be on the cable.
+//!
+//! With guards `under_way` counts the difference once more: at the end of the frame all three agree, unless one was upset. And a second
+//! parallel CRC5 looks at the word where it is stored, for as long as it stands there: what is published is what was checked.
 
 pub mod field;
 mod kernel;
 
-use crate::endat::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
+use crate::endat::crc5::{Crc5Check, Crc5Word, ORDER_OF_X};
 use crate::endat::features::Features;
 use crate::endat::ports::{AnswerCheckOut, AnswerShapeIn, CellsIn, ControlIn, ProgressOut};
 use crate::protocol;
@@ -59,6 +61,12 @@ pub struct Receiver {
     pub look: Signal<In, Bit>,
     /// Mode command that was sent.
     pub command: Signal<In, Bits<6>>,
+    /// Strobe, between two frames: the word and the CRC take these.
+    pub put: Signal<In, Bit>,
+    /// For the word.
+    pub put_word: Signal<In, Bits<48>>,
+    /// For the CRC.
+    pub put_crc: Signal<In, Bits<5>>,
     /// How far a receiver is.
     #[bundle]
     pub progress: ProgressOut,
@@ -72,9 +80,9 @@ pub struct Receiver {
     /// CRC computed from the bits as they came.
     pub crc_computed: Signal<Out, Bits<5>>,
     #[start]
-    check: Crc5Check,
+    crc: Crc5Word,
     #[start]
-    serial: Crc5Serial,
+    check: Crc5Check,
     #[start(Field::Done)]
     field: Reg<Field>,
     left: Reg<Bits<7>>,
@@ -95,8 +103,8 @@ pub struct Receiver {
     done_now: Reg<Bit>,
     used: Reg<Bit>,
     ended: Reg<Bit>,
-    parallel_equal: Reg<Bit>,
-    serial_good: Reg<Bit>,
+    crc_equal: Reg<Bit>,
+    stored_fits: Reg<Bit>,
     refused: Reg<Bit>,
     shift_now: Reg<Bit>,
     bit_now: Reg<Bit>,
@@ -116,6 +124,8 @@ pub struct Receiver {
     new_block: Reg<Bit>,
     heard: Reg<Bits<7>>,
     echo: Reg<Bit>,
+    swaps: Constant<Bit>,
+    has_guards: Constant<Bit>,
     has_all: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
@@ -131,6 +141,7 @@ pub struct Receiver {
     again: Signal<Local, Bit>,
     skip_step: Signal<Local, Bit>,
     covered_bit: Signal<Local, Bit>,
+    crc_fits: Signal<Local, Bit>,
     shift: Signal<Local, Bit>,
     bit_in: Signal<Local, Bit>,
     in50: Signal<Local, Bit>,
@@ -157,6 +168,8 @@ impl Receiver {
         let lead = u64::from(protocol::LEAD_PULSES);
         let order = ORDER_OF_X as u64;
         Self::from_parts(ReceiverParts {
+            swaps: Constant::new(features.swaps()),
+            has_guards: Constant::new(features.upset_guards),
             has_all: Constant::new(features.requests),
             has_diagnosis: Constant::new(features.diagnosis),
             has_continuous: Constant::new(features.continuous),

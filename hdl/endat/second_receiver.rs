@@ -94,7 +94,10 @@ impl SecondReceiver {
     /// One for a channel with these features.
     pub fn new(features: Features) -> Self {
         Self::from_parts(SecondReceiverParts {
-            receiver: Receiver::new(features),
+            receiver: Receiver::new(Features {
+                second_receiver: true,
+                ..features
+            }),
             upset_cause: Constant::new(cause::UPSET.into()),
             upset_flag: Constant::new(flag(cause::UPSET).into()),
         })
@@ -107,6 +110,9 @@ impl Logic for SecondReceiver {
         connect!(self.receiver <= self;
             clock, reset, payload_bits, infos, command
         );
+        self.receiver.put.next = false;
+        self.receiver.put_word.next = 0.into();
+        self.receiver.put_crc.next = 0.into();
         AnswerShapeIn::link(&mut self.shape, &mut self.receiver.shape);
         self.inputs.next = 0.into();
         self.inputs.next = self.inputs.val().replace_bit(0, self.control.start.val());
@@ -202,10 +208,8 @@ impl Logic for SecondReceiver {
             | (self.check.f2.val() != self.receiver.verdict.f2.val())
             | (self.crc_received.val() != self.receiver.crc_received.val())
             // That of the next block begins as soon as its separator has come.
-            | ((self.check.serial_ok.val() != self.receiver.verdict.serial_ok.val())
-                & !self.separator.q.val()
-                & !self.leaves.q.val())
-            | (self.check.parallel_ok.val() != self.receiver.verdict.parallel_ok.val());
+            | (self.check.crc_ok.val() != self.receiver.verdict.crc_ok.val())
+            | (self.check.stored_ok.val() != self.receiver.verdict.stored_ok.val());
         // What has come stays where it is until a new block, or frame, begins.
         self.ends.next = self.receiver.progress.done.val() | self.receiver.progress.info_done.val();
         if self.ends.val() {

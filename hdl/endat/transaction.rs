@@ -30,7 +30,7 @@ use crate::endat::features::{Features, FixedTimes};
 use crate::endat::line_health::LineHealth;
 use crate::endat::ports::*;
 use crate::endat::timing;
-use crate::several::each;
+use crate::several::numbered;
 use crate::sure_bit::SureBit;
 use cause::flag;
 use last_edge::LastEdge;
@@ -117,6 +117,7 @@ pub struct Transaction {
     health: LineHealth,
     last_edge: LastEdge,
     verdict: Verdict,
+    has_guards: Constant<Bit>,
     has_all: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
@@ -247,7 +248,10 @@ impl Transaction {
             too_long: Constant::new(flag(cause::WATCHDOG).into()),
             tail_low: Constant::new(flag::TAIL_LOW.into()),
             upset: Constant::new(flag(cause::UPSET).into()),
-            runs: each(usize::from(features.continuous)),
+            runs: numbered(usize::from(features.continuous), |_| {
+                SureBit::new(features.upset_guards)
+            }),
+            has_guards: Constant::new(features.upset_guards),
             _runs: features.continuous.into(),
         })
     }

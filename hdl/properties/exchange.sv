@@ -3,7 +3,7 @@
 // quiet_after_reset: After a reset no request begins for 63 us, the longest pause before a reply, and then only when the line is at rest.
 // one_verdict: A trigger that meets no exchange has exactly one verdict, and there is none without.
 // request_as_asked: What goes out is a LOW start bit, sync code, ID and parity of the request, and a HIGH delimiter; behind the request the line is HIGH.
-// header_as_asked: A reply is good only if its first eight bits are the sync code, the ID of the request and the right parity.
+// header_as_asked: A reply is good only if its first eight bits are the sync code, the ID of the request and the right parity; without guards as long as that ID stays.
 // sum_as_received: A reply is good only if its bytes as sampled, the CRC among them, come to 0.
 reg f_owed; initial f_owed = 1'b0;
 reg f_past_valid; initial f_past_valid = 1'b0;
@@ -49,7 +49,10 @@ always @* begin
     driver_only: assert (!driver | (phase == PHASE_SEND) | (phase == PHASE_RELEASE));
     one_verdict: assert (f_owed == (phase != PHASE_REST));
     one_verdict_owed: assert (!publish | f_owed);
-    header_as_asked: assert (!(publish & good) | ((f_header[6:0] == {request_id, 3'b010}) & !(^f_header[7:3])));
+    header_as_asked: assert (!(publish & good) | !(HAS_GUARDS | f_id_is_held) | ((f_header[6:0] == {request_id, 3'b010}) & !(^f_header[7:3])));
+    header_as_asked_echo: assert ((phase != PHASE_FIELD) | !order_is_control | bad_echo | !f_id_is_held | (((f_first[6:3] ^ request_id) & f_come[6:3]) == 4'd0));
+    header_as_asked_echoed: assert (!f_in_reply | refused | upset | order_is_control | bad_echo | !f_id_is_held | (f_header[6:3] == request_id));
+    header_as_asked_ends: assert ((phase != PHASE_JUDGE) | refused | missed | bad_delimiter | upset | (order_is_crc & (index == 4'd9)));
     header_as_asked_bits: assert ((phase != PHASE_FIELD) | (index <= 4'd8) | (index == 4'd15));
     header_as_asked_sync: assert ((phase != PHASE_FIELD) | !order_is_control | (((f_first ^ 8'h02) & f_come & 8'h07) == 8'd0));
     header_as_asked_id: assert ((phase != PHASE_FIELD) | !order_is_control | ((f_bits >= 4'd7) ? (echo == f_first[6:3]) : (f_bits > 4'd3) ? (({4'd0, echo} >> (4'd7 - f_bits)) == ({3'd0, f_first[7:3]} & (f_come >> 3))) : (echo == 4'd0)));

@@ -2,12 +2,9 @@
 // one_result: A trigger that meets no frame has exactly one result, and there is none without.
 // only_on_high: The clock falls for the first time only for a trigger, with DATA HIGH and a kind of frame that may go out.
 // waits_after_reset: After a reset, and after a frame at whose end DATA was HIGH, no frame begins before the longest recovery time is over, whatever DATA is.
-// counted_twice: Both counts of bits are the same, and so are both notes of the edge that takes none.
-// as_it_came: What is stored is what came: the sum of its bits is that of the bits as they were taken, unless there were more than 48.
 // good_is_whole: A position is taken only if DATA was HIGH before the frame and LOW behind it, all bits have come, its parity bit fits, and both copies are the same.
 // withdrawn: If DATA is still LOW when the longest recovery time is over, no position is valid, and there is a cause. A frame that brought none withdraws none.
 reg f_owed; initial f_owed = 1'b0;
-reg f_full; initial f_full = 1'b0;
 reg f_past_valid; initial f_past_valid = 1'b0;
 // after a reset, before the first trigger
 wire f_begins = unknown & not_low;
@@ -16,8 +13,6 @@ always @(posedge clock) begin
     if (publishes) f_owed <= 1'b0;
     if (trigger & (state == AT_REST)) f_owed <= 1'b1;
     if (reset) f_owed <= 1'b0;
-    if (takes_bit & !is_parity & !second & word[47]) f_full <= 1'b1;
-    if ((trigger & (state == AT_REST)) | reset) f_full <= 1'b0;
 end
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
     if ($past((state == AT_RECOVERY) & is_due & !filter_level & good)) withdrawn: assert (!fresh & !position_valid & ((cause == 5'd8) | (cause == 5'd6)));
@@ -39,7 +34,36 @@ always @* begin
     one_result_once: assert (!publishes | f_owed);
     one_result_runs: assert (!(f_runs & unknown) | ((state == AT_LAST) & not_low));
     waits_after_reset_first: assert ((state != AT_LAST) | !first | f_begins);
-    counted_twice: assert ((left == left_too) & (first == first_too) & !torn);
-    as_it_came: assert (f_full | ((^word) == sum));
     good_is_whole: assert (!snapshot_good | (!not_high & !not_low & !unknown & !not_even & (left == 6'd0) & (second == frame[1]) & (!frame[1] | (word == again))));
 end
+// with HAS_GUARDS
+// counted_twice: Both counts of bits are the same, and so are both notes of the edge that takes none.
+// as_it_came: What is stored is what came: the sum of its bits is that of the bits as they were taken, unless there were more than 48.
+reg f_full; initial f_full = 1'b0;
+always @(posedge clock) begin
+    if (takes_bit & !is_parity & !second & word[47]) f_full <= 1'b1;
+    if ((trigger & (state == AT_REST)) | reset) f_full <= 1'b0;
+end
+always @* begin
+    counted_twice: assert ((left == left_too) & (first == first_too) & !torn);
+    as_it_came: assert (f_full | ((^word) == sum));
+end
+// end
+// without HAS_GUARDS
+// inputs: settings stay while the port is busy and in the cycle of a trigger, and a position has a bit at least; every other input may be anything in every cycle
+wire [11:0] f_settings = {frame, position_bits};
+reg  [11:0] f_before;
+reg f_stay; initial f_stay = 1'b0;
+always @(posedge clock) begin
+    f_before <= f_settings;
+    f_stay <= busy | trigger;
+end
+always @* begin
+    assume (!f_stay | (f_settings == f_before));
+    assume ((position_bits != 6'd0) & (position_bits <= 6'd48));
+    good_is_whole_copies: assert (!f_runs | f_begins | !second | frame[1]);
+    good_is_whole_left: assert (((state != AT_LOW) & (state != AT_HIGH)) | (left != 6'd0));
+    good_is_whole_last: assert ((state != AT_LAST) | f_begins | ((left == 6'd0) & (second == frame[1])));
+    good_is_whole_judged: assert ((state != AT_JUDGE) | unknown | not_high | ((left == 6'd0) & (second == frame[1])));
+end
+// end

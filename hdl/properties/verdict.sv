@@ -1,4 +1,4 @@
-// good_means: A position is good only if both CRC checks, F1 and F2 said so, its settings were whole, and an answer was taken.
+// good_means: A position is good only if the CRC, F1 and F2 said so, its settings were whole, and an answer was taken.
 // one_result_each: An answer gives one result at most: none without a frame that was answered, refused, late or given up.
 // lost_is_told: A trigger that was lost is kept until a result tells it.
 reg f_past_valid; initial f_past_valid = 1'b0;
@@ -11,7 +11,7 @@ reg f_reason; initial f_reason = 1'b0;
 reg f_checked; initial f_checked = 1'b0;
 reg f_open; initial f_open = 1'b0;
 always @(posedge clock) begin
-    f_checked <= !reset & prove & (f_open | taken_now) & serial_ok & parallel_ok & !f1 & f2 & !settings_upset;
+    f_checked <= !reset & prove & (f_open | taken_now) & crc_ok & stored_ok & !f1 & f2 & !settings_upset;
     f_reason <= !reset & ((prove & (f_open | taken_now)) | refused | announced | gave_up_now);
     if (taken_now) f_open <= 1'b1;
     if (reset | gave_up_now | (prove & (f_open | taken_now))) f_open <= 1'b0;

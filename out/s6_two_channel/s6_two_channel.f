@@ -14,15 +14,13 @@ s6_two_channel_command_sender.v
 s6_two_channel_line_delay.v
 s6_two_channel_half_period.v
 s6_two_channel_receiver.v
-s6_two_channel_crc5_check.v
-s6_two_channel_crc5_serial.v
+s6_two_channel_crc5_word.v
 s6_two_channel_transaction.v
 s6_two_channel_last_edge.v
 s6_two_channel_verdict.v
 s6_two_channel_primary_cause.v
 s6_two_channel_snapshot.v
 s6_two_channel_command_shape.v
-s6_two_channel_frame_settings.v
 s6_two_channel_stream.v
 s6_two_channel_frame_buffer.v
 s6_two_channel_set_channel_number_1.v

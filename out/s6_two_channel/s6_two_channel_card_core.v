@@ -118,7 +118,6 @@ module s6_two_channel_card_core (
     wire         bank_ring_turn;
     wire         bank_ring_home;
     wire   [8:0] bank_ring_in;
-    wire         bank_is_damaged;
     wire         bank_stream_selected;
     wire   [7:0] bank_part_byte;
     wire         bank_trigger_now;
@@ -135,7 +134,6 @@ module s6_two_channel_card_core (
     wire   [5:0] registers_0_command;
     wire   [5:0] registers_0_position_bits;
     wire   [3:0] registers_0_filter_cycles;
-    wire         registers_0_filter_half;
     wire   [5:0] registers_0_start_window_cycles;
     wire  [11:0] registers_0_start_timeout_us;
     wire  [12:0] registers_0_recovery_limit_cycles;
@@ -149,7 +147,6 @@ module s6_two_channel_card_core (
     wire   [5:0] registers_1_command;
     wire   [5:0] registers_1_position_bits;
     wire   [3:0] registers_1_filter_cycles;
-    wire         registers_1_filter_half;
     wire   [5:0] registers_1_start_window_cycles;
     wire  [11:0] registers_1_start_timeout_us;
     wire  [12:0] registers_1_recovery_limit_cycles;
@@ -243,7 +240,6 @@ module s6_two_channel_card_core (
         .ring_home(bank_ring_home),
         .ring_in(bank_ring_in),
         .ring_out(ring_link_2),
-        .is_damaged(bank_is_damaged),
         .stream_selected(bank_stream_selected),
         .part_byte(bank_part_byte),
         .trigger_count(trigger_trigger_count),
@@ -289,13 +285,11 @@ module s6_two_channel_card_core (
         .ring_home(bank_ring_home),
         .ring_in(registers_0_ring_in),
         .ring_out(ring_link_0),
-        .card_damaged(bank_is_damaged),
         .period_cycles(registers_0_period_cycles),
         .first_low_extra_cycles(registers_0_first_low_extra_cycles),
         .command(registers_0_command),
         .position_bits(registers_0_position_bits),
         .filter_cycles(registers_0_filter_cycles),
-        .filter_half(registers_0_filter_half),
         .start_window_cycles(registers_0_start_window_cycles),
         .start_timeout_us(registers_0_start_timeout_us),
         .recovery_limit_cycles(registers_0_recovery_limit_cycles)
@@ -337,13 +331,11 @@ module s6_two_channel_card_core (
         .ring_home(bank_ring_home),
         .ring_in(registers_1_ring_in),
         .ring_out(ring_link_1),
-        .card_damaged(bank_is_damaged),
         .period_cycles(registers_1_period_cycles),
         .first_low_extra_cycles(registers_1_first_low_extra_cycles),
         .command(registers_1_command),
         .position_bits(registers_1_position_bits),
         .filter_cycles(registers_1_filter_cycles),
-        .filter_half(registers_1_filter_half),
         .start_window_cycles(registers_1_start_window_cycles),
         .start_timeout_us(registers_1_start_timeout_us),
         .recovery_limit_cycles(registers_1_recovery_limit_cycles)
@@ -360,7 +352,6 @@ module s6_two_channel_card_core (
         .command(registers_0_command),
         .position_bits(registers_0_position_bits),
         .filter_cycles(registers_0_filter_cycles),
-        .filter_half(registers_0_filter_half),
         .start_window_cycles(registers_0_start_window_cycles),
         .start_timeout_us(registers_0_start_timeout_us),
         .recovery_limit_cycles(registers_0_recovery_limit_cycles),
@@ -398,7 +389,6 @@ module s6_two_channel_card_core (
         .command(registers_1_command),
         .position_bits(registers_1_position_bits),
         .filter_cycles(registers_1_filter_cycles),
-        .filter_half(registers_1_filter_half),
         .start_window_cycles(registers_1_start_window_cycles),
         .start_timeout_us(registers_1_start_timeout_us),
         .recovery_limit_cycles(registers_1_recovery_limit_cycles),
@@ -456,8 +446,6 @@ module s6_two_channel_card_core (
         .busy(set_0_busy),
         .result_strobe(port_0_result_strobe),
         .position(port_0_position),
-        .position_crc(port_0_position_crc),
-        .position_has_f2(port_0_position_has_f2),
         .position_valid(port_0_position_valid),
         .fresh(port_0_fresh),
         .cause(port_0_cause),
@@ -476,8 +464,6 @@ module s6_two_channel_card_core (
         .busy(set_1_busy),
         .result_strobe(port_1_result_strobe),
         .position(port_1_position),
-        .position_crc(port_1_position_crc),
-        .position_has_f2(port_1_position_has_f2),
         .position_valid(port_1_position_valid),
         .fresh(port_1_fresh),
         .cause(port_1_cause),

@@ -16,8 +16,8 @@
 // has a frame of its own. AddInfo keeps the record of the additional data that follow each position.
 //
 // The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and
-// measures the propagation delay; all others run at the configured clock. A frame takes its settings over with its first falling
-// edge; inputs that change later count for the next one.
+// measures the propagation delay; all others run at the configured clock. Settings stay as they are while busy. With guards a frame
+// takes a copy of them, and a setting that changes under way makes its position invalid.
 module s6_two_channel_channel (
     // System clock.
     input  wire         clock,
@@ -41,8 +41,6 @@ module s6_two_channel_channel (
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
     input  wire   [3:0] filter_cycles,
-    // And half a system clock cycle more, where DATA is looked at on both edges.
-    input  wire         filter_half,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
     // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
@@ -100,6 +98,10 @@ module s6_two_channel_channel (
 
     // Strobe: a trigger has been lost.
     wire         displaced;
+    wire   [5:0] command_set;
+    wire   [5:0] width_set;
+    wire   [3:0] filter_set;
+    wire   [5:0] window_set;
     wire   [5:0] command_now;
     wire   [5:0] payload_bits;
     reg   [10:0] period;
@@ -116,7 +118,6 @@ module s6_two_channel_channel (
     wire         delay_sample;
     wire         delay_edge_in_window;
     wire         delay_center;
-    wire         delay_is_upset;
     wire         receiver_level;
     wire         receiver_skipping;
     wire         receiver_hunting;
@@ -131,15 +132,15 @@ module s6_two_channel_channel (
     wire         receiver_finished;
     wire         receiver_f1;
     wire         receiver_f2;
-    wire         receiver_serial_ok;
-    wire         receiver_parallel_ok;
+    wire         receiver_crc_ok;
+    wire         receiver_stored_ok;
     wire  [47:0] receiver_payload;
     wire   [4:0] receiver_crc_received;
     wire   [4:0] receiver_crc_computed;
     wire         transaction_is_known;
     reg          transaction_f1;
     reg          transaction_f2;
-    reg          transaction_serial_ok;
+    reg          transaction_crc_ok;
     wire         transaction_start;
     wire         transaction_aborts;
     wire         transaction_acquire;
@@ -156,34 +157,24 @@ module s6_two_channel_channel (
     wire         transaction_withdraw;
     wire         transaction_confirm;
     wire         transaction_is_at_rest;
+    wire         snapshot_swap;
     wire         shape_is_position;
     wire         shape_has_f2;
     wire   [5:0] wanted_shape_command;
     wire         wanted_shape_is_position;
     wire         wanted_shape_has_f2;
-    wire   [5:0] settings_frame_command;
-    wire  [10:0] settings_period_cycles_now;
-    wire   [5:0] settings_command_now;
-    wire   [5:0] settings_position_bits_now;
-    wire   [3:0] settings_filter_cycles_now;
-    wire         settings_filter_half_now;
-    wire   [5:0] settings_start_window_cycles_now;
-    wire  [10:0] settings_first_low_extra_cycles_now;
-    wire  [11:0] settings_start_timeout_us_now;
-    wire  [12:0] settings_recovery_limit_cycles_now;
-    wire         settings_is_upset;
     reg          clk_pin; initial clk_pin = 1'b1;
     reg          data_pin; initial data_pin = 1'b0;
     reg          data_pin_next;
     reg          oe_pin; initial oe_pin = 1'b0;
     reg          oe_pin_next;
-    wire         _unused_ok = &{1'b0, displaced, shape_is_position, wanted_shape_has_f2, settings_filter_half_now};
+    wire         _unused_ok = &{1'b0, displaced, transaction_is_at_rest, shape_is_position, wanted_shape_has_f2};
 
     s6_two_channel_input_filter u_filter (
         .clock(clock),
         .reset(reset),
         .pin(data_i),
-        .filter_cycles(settings_filter_cycles_now),
+        .filter_cycles(filter_set),
         .level(filter_level),
         .edge_strobe(filter_edge_strobe)
     );
@@ -224,12 +215,11 @@ module s6_two_channel_channel (
         .data_edge(filter_edge_strobe),
         .follow(receiver_start_found),
         .period_cycles(period),
-        .start_window_cycles(settings_start_window_cycles_now),
+        .start_window_cycles(window_set),
         .pulse(delay_pulse),
         .sample(delay_sample),
         .edge_in_window(delay_edge_in_window),
         .center(delay_center),
-        .is_upset(delay_is_upset),
         .delay_cycles(delay_cycles)
     );
     s6_two_channel_receiver u_receiver (
@@ -246,6 +236,9 @@ module s6_two_channel_channel (
         .level(receiver_level),
         .payload_bits(payload_bits),
         .has_f2(shape_has_f2),
+        .put(snapshot_swap),
+        .put_word(position),
+        .put_crc(position_crc),
         .skipping(receiver_skipping),
         .hunting(receiver_hunting),
         .start_found(receiver_start_found),
@@ -259,8 +252,8 @@ module s6_two_channel_channel (
         .finished(receiver_finished),
         .f1(receiver_f1),
         .f2(receiver_f2),
-        .serial_ok(receiver_serial_ok),
-        .parallel_ok(receiver_parallel_ok),
+        .crc_ok(receiver_crc_ok),
+        .stored_ok(receiver_stored_ok),
         .payload(receiver_payload),
         .crc_received(receiver_crc_received),
         .crc_computed(receiver_crc_computed)
@@ -284,15 +277,13 @@ module s6_two_channel_channel (
         .all_ended(receiver_all_ended),
         .done(receiver_done),
         .finished(receiver_finished),
-        .settings_upset(settings_is_upset),
         .f1(transaction_f1),
         .f2(transaction_f2),
-        .serial_ok(transaction_serial_ok),
-        .parallel_ok(receiver_parallel_ok),
-        .delay_upset(delay_is_upset),
-        .first_low_extra_cycles(settings_first_low_extra_cycles_now),
-        .start_timeout_us(settings_start_timeout_us_now),
-        .recovery_limit_cycles(settings_recovery_limit_cycles_now),
+        .crc_ok(transaction_crc_ok),
+        .stored_ok(receiver_stored_ok),
+        .first_low_extra_cycles(first_low_extra_cycles),
+        .start_timeout_us(start_timeout_us),
+        .recovery_limit_cycles(recovery_limit_cycles),
         .start(transaction_start),
         .aborts(transaction_aborts),
         .acquire(transaction_acquire),
@@ -346,7 +337,8 @@ module s6_two_channel_channel (
         .crc_computed(crc_computed),
         .position_crc(position_crc),
         .position_width(position_width),
-        .position_has_f2(position_has_f2)
+        .position_has_f2(position_has_f2),
+        .swap(snapshot_swap)
     );
     s6_two_channel_command_shape u_shape (
         .command(command_now),
@@ -358,43 +350,22 @@ module s6_two_channel_channel (
         .is_position(wanted_shape_is_position),
         .has_f2(wanted_shape_has_f2)
     );
-    s6_two_channel_frame_settings u_settings (
-        .clock(clock),
-        .reset(reset),
-        .is_at_rest(transaction_is_at_rest),
-        .start(transaction_start),
-        .frame_command(settings_frame_command),
-        .period_cycles(period_cycles),
-        .first_low_extra_cycles(first_low_extra_cycles),
-        .command(command),
-        .position_bits(position_bits),
-        .filter_cycles(filter_cycles),
-        .filter_half(filter_half),
-        .start_window_cycles(start_window_cycles),
-        .start_timeout_us(start_timeout_us),
-        .recovery_limit_cycles(recovery_limit_cycles),
-        .period_cycles_now(settings_period_cycles_now),
-        .command_now(settings_command_now),
-        .position_bits_now(settings_position_bits_now),
-        .filter_cycles_now(settings_filter_cycles_now),
-        .filter_half_now(settings_filter_half_now),
-        .start_window_cycles_now(settings_start_window_cycles_now),
-        .first_low_extra_cycles_now(settings_first_low_extra_cycles_now),
-        .start_timeout_us_now(settings_start_timeout_us_now),
-        .recovery_limit_cycles_now(settings_recovery_limit_cycles_now),
-        .is_upset(settings_is_upset)
-    );
+
+    // Settings of the frame, and the clock period that it runs with.
+    assign command_set = command;
+    assign width_set = position_bits;
+    assign filter_set = filter_cycles;
+    assign window_set = start_window_cycles;
 
     always @* begin
-        period = settings_period_cycles_now;
+        period = period_cycles;
         if (transaction_slow) begin
             period = CALIBRATION_PERIOD_CYCLES;
         end
     end
     // Which command the next frame has is settled before it begins, and stays until all has been told of it.
-    assign command_now = settings_command_now;
-    assign payload_bits = settings_position_bits_now;
-    assign settings_frame_command = command_now;
+    assign command_now = command_set;
+    assign payload_bits = width_set;
     // Outside of a command nothing is left to send, whatever a register says.
     assign sender_aborts = transaction_aborts | (!receiver_skipping & !transaction_start_supplement);
     assign receiver_level = filter_level;
@@ -406,7 +377,7 @@ module s6_two_channel_channel (
     always @* begin
         transaction_f1 = receiver_f1;
         transaction_f2 = receiver_f2;
-        transaction_serial_ok = receiver_serial_ok;
+        transaction_crc_ok = receiver_crc_ok;
     end
 
     always @* begin
@@ -441,7 +412,7 @@ module s6_two_channel_channel (
     wire [0:0] frame_own = 1'd0;
     // safe_after_reset: In the cycle after a reset CLOCK is HIGH and DATA is not driven.
     // driver_as_sent: DATA is driven only as the command sender, or the line probe, said in the cycle before.
-    // frame_is_driven: A frame is on the wire only while the settings that it is received with are held.
+    // frame_is_driven: A frame is on the wire only while the channel is busy, and its settings stay.
     // positions_only: A frame that a trigger begins has a command whose answer is a position, with a request or without.
     wire f_rides = command_now[5:3] == command_now[2:0] & command_now != 6'b000000 & command_now != 6'b010010 & command_now != 6'b111111;
     wire f_bare = command_now == 6'b000111 | command_now == 6'b111000;
@@ -453,8 +424,17 @@ module s6_two_channel_channel (
             else `FORMAL_LABEL(driver_as_sent) assert (!data_oe | $past(sender_oe | transaction_probe));
         end
     end
-    always @* `FORMAL_LABEL(frame_is_driven) assert (!transaction_run | !transaction_is_at_rest);
+    always @* `FORMAL_LABEL(frame_is_driven) assert (!transaction_run | (!transaction_is_at_rest & busy));
     always @* `FORMAL_LABEL(positions_only) assert (!transaction_start | frame_own | f_bare | f_rides);
+    // inputs: settings stay while the channel is busy and in the cycle of a trigger; every other input may be anything in every cycle
+    wire [68:0] f_settings = {period_cycles, first_low_extra_cycles, command, position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles};
+    reg  [68:0] f_before;
+    reg f_stay; initial f_stay = 1'b0;
+    always @(posedge clock) begin
+        f_before <= f_settings;
+        f_stay <= busy | trigger;
+    end
+    always @* assume (!f_stay | (f_settings == f_before));
 `endif
 `undef FORMAL_LABEL
 `endif

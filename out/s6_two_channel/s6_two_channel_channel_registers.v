@@ -86,20 +86,16 @@ module s6_two_channel_channel_registers (
     input  wire   [8:0] ring_in,
     // Byte to the ring block in front.
     output wire   [8:0] ring_out,
-    // The card's own settings are not what was written.
-    input  wire         card_damaged,
     // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
     output wire  [10:0] period_cycles,
     // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     output wire  [10:0] first_low_extra_cycles,
     // Mode command of a triggered frame.
-    output reg    [5:0] command,
+    output wire   [5:0] command,
     // Position width, 1..=48 bits.
     output wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
     output wire   [3:0] filter_cycles,
-    // And half a system clock cycle more, where DATA is looked at on both edges.
-    output wire         filter_half,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     output wire   [5:0] start_window_cycles,
     // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
@@ -167,7 +163,6 @@ module s6_two_channel_channel_registers (
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
-    wire         ring_is_damaged;
     reg   [31:0] config0; initial config0 = 32'h381d0020;
     reg   [31:0] config0_next;
     reg   [31:0] config1; initial config1 = 32'h20800b8;
@@ -183,8 +178,7 @@ module s6_two_channel_channel_registers (
         .byte_out(ring_out),
         .word0(ring_word0),
         .word1(ring_word1),
-        .word2(ring_word2),
-        .is_damaged(ring_is_damaged)
+        .word2(ring_word2)
     );
 
     always @* begin
@@ -202,7 +196,8 @@ module s6_two_channel_channel_registers (
         config0_next = config0;
         config1_next = config1;
         config2_next = config2;
-        if (ring_home & !busy) begin
+        // Not in the cycle of a trigger either: its frame has what was looked at when it was taken.
+        if (ring_home & !busy & !trigger) begin
             config0_next = ring_word0;
             config1_next = ring_word1;
             config2_next = ring_word2;
@@ -397,17 +392,10 @@ module s6_two_channel_channel_registers (
     assign first_low_extra_cycles = config1[10:0];
     assign start_window_cycles = config1[21:16];
     assign filter_cycles = config1[27:24];
-    assign filter_half = config1[23];
     assign start_timeout_us = config2[11:0];
     assign recovery_limit_cycles = config2[28:16];
-
-    always @* begin
-        // With settings that nobody wrote nothing goes out: these are no commands.
-        command = config0[29:24];
-        if (ring_is_damaged | card_damaged) begin
-            command = 6'd0;
-        end
-    end
+    // With settings that nobody wrote nothing goes out: these are no commands.
+    assign command = config0[29:24];
     assign byte_0_reset = word_skip[0];
     assign byte_1_reset = word_skip[1];
     assign byte_2_reset = word_skip[2];
@@ -517,6 +505,7 @@ module s6_two_channel_channel_registers (
     // held_together: All words of a result that are held change in one cycle, when they are told to follow it, and in no other one.
     // age_while_shown: Age and `stale` of what is held go on only while nothing is read.
     // age_stands: The age of what is held counts microseconds up to 65535, and stands there.
+    // settings_stay: Settings change only while the channel is not busy, and not in the cycle of a trigger.
     // owed_once: A channel owes one result for a trigger that it takes, until that comes.
     reg f_past_valid; initial f_past_valid = 1'b0;
     always @(posedge clock) begin
@@ -524,6 +513,7 @@ module s6_two_channel_channel_registers (
         if (f_past_valid & !$past(reset)) begin
             if ($past(!load)) `FORMAL_LABEL(held_together) assert ($stable({held_0, held_1, held_2, held_3, held_4, held_5}));
             if ($past(!show)) `FORMAL_LABEL(age_while_shown) assert ($stable({age_shown, stale_shown}));
+            if ($past(busy | trigger)) `FORMAL_LABEL(settings_stay) assert ($stable({config0, config1, config2}));
             if ($past(!load)) `FORMAL_LABEL(age_stands) assert (age == $past(age) + {15'd0, $past(tick_us & (age != 16'hffff))});
             if ($past(result_strobe & !new_set)) `FORMAL_LABEL(owed_once) assert (!waiting);
             if ($past(!result_strobe & !new_set)) `FORMAL_LABEL(owed_once_kept) assert ($stable(waiting));

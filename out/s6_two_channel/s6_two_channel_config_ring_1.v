@@ -13,7 +13,8 @@
 // A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
 // in place only while the ring stands still, so the blocks work from copies that are taken then.
 //
-// Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
+// With guards each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is
+// written again.
 module s6_two_channel_config_ring_1 (
     // System clock.
     input  wire         clock,
@@ -30,9 +31,7 @@ module s6_two_channel_config_ring_1 (
     // Word 1, while the ring stands still.
     output wire  [31:0] word1,
     // Word 2, while the ring stands still.
-    output wire  [31:0] word2,
-    // The words are not what was written, as of the last cycle in which the ring stood still.
-    output wire         is_damaged
+    output wire  [31:0] word2
 );
     reg   [31:0] w0; initial w0 = 32'd3;
     reg   [31:0] w0_next;
@@ -40,28 +39,19 @@ module s6_two_channel_config_ring_1 (
     reg   [31:0] w1_next;
     reg   [31:0] w2; initial w2 = 32'd0;
     reg   [31:0] w2_next;
-    reg   [11:0] parities; initial parities = 12'd16;
-    reg   [11:0] parities_next;
-    reg          damaged; initial damaged = 1'b0;
-    reg          damaged_next;
+    wire         _unused_ok = &{1'b0, byte_in[8]};
 
     always @* begin
         w0_next = w0;
         w1_next = w1;
         w2_next = w2;
-        parities_next = parities;
-        damaged_next = damaged;
         if (turn) begin
             w0_next = {w0[23:0], w1[31:24]};
             w1_next = {w1[23:0], w2[31:24]};
             w2_next = {w2[23:0], byte_in[7:0]};
-            parities_next = {parities[10:0], byte_in[8]};
-        end else begin
-            damaged_next = (^w0) ^ (^w1) ^ (^w2) ^ (^parities);
         end
     end
-    assign is_damaged = damaged;
-    assign byte_out = {parities[11], w0[31:24]};
+    assign byte_out = {1'b0, w0[31:24]};
     assign word0 = w0;
     assign word1 = w1;
     assign word2 = w2;
@@ -71,14 +61,10 @@ module s6_two_channel_config_ring_1 (
             w0 <= 32'd3;
             w1 <= 32'h2710;
             w2 <= 32'd0;
-            parities <= 12'd16;
-            damaged <= 1'b0;
         end else begin
             w0 <= w0_next;
             w1 <= w1_next;
             w2 <= w2_next;
-            parities <= parities_next;
-            damaged <= damaged_next;
         end
     end
 endmodule

@@ -36,8 +36,6 @@ module s6_two_channel_encoder_port (
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
     input  wire   [3:0] filter_cycles,
-    // And half a system clock cycle more, where DATA is looked at on both edges.
-    input  wire         filter_half,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
     // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
@@ -105,7 +103,6 @@ module s6_two_channel_encoder_port (
         .command(command),
         .position_bits(position_bits),
         .filter_cycles(filter_cycles),
-        .filter_half(filter_half),
         .start_window_cycles(start_window_cycles),
         .start_timeout_us(start_timeout_us),
         .recovery_limit_cycles(recovery_limit_cycles),

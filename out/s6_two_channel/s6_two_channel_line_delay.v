@@ -55,12 +55,9 @@ module s6_two_channel_line_delay (
     output wire         edge_in_window,
     // Strobe: the middle of the expected place of a data edge.
     output wire         center,
-    // The tracked delay is not what was measured: a register was upset. Until it is measured again.
-    output wire         is_upset,
     // Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
     output wire  [10:0] delay_cycles
 );
-    wire         parity_now;
     wire         first_rise;
     wire         acquired;
     wire         first_center;
@@ -107,12 +104,7 @@ module s6_two_channel_line_delay (
     reg    [5:0] edge_error_next;
     reg          edge_outside; initial edge_outside = 1'b0;
     reg          edge_outside_next;
-    reg          parity; initial parity = 1'b0;
-    reg          parity_next;
-    reg          moved; initial moved = 1'b0;
-    reg          wrong; initial wrong = 1'b0;
-    reg          wrong_next;
-    wire         _unused_ok = &{1'b0, half_left_cycles};
+    wire         _unused_ok = &{1'b0, places[11], half_left_cycles};
 
     s6_two_channel_half_period u_half (
         .clock(clock),
@@ -129,24 +121,8 @@ module s6_two_channel_line_delay (
     assign first_rise = rise & (acquire | !timing_armed);
     assign places = {1'b0, delay};
     assign delay_now = places[10:0];
-    assign parity_now = ^places;
-    assign is_upset = wrong;
     assign due = delay_over;
     assign acquired = acquire & hunting & data_edge & !cells_run;
-
-    always @* begin
-        parity_next = parity;
-        wrong_next = wrong;
-        if (moved) begin
-            parity_next = parity_now;
-        end else if (parity_now ^ parity) begin
-            wrong_next = 1'b1;
-        end
-        // One from a register is not measured.
-        if (acquired) begin
-            wrong_next = 1'b0;
-        end
-    end
     assign first_center = acquired | (due & !cells_run & !acquire);
     // With two system clock cycles in a bit one cell more begins before a burst is over.
     assign sample_now = sample_strobe;
@@ -271,9 +247,6 @@ module s6_two_channel_line_delay (
             edge_late <= 1'b0;
             edge_error <= 6'd0;
             edge_outside <= 1'b0;
-            parity <= 1'b0;
-            moved <= 1'b0;
-            wrong <= 1'b0;
         end else begin
             delay <= delay_next;
             since_rise <= since_rise_next;
@@ -292,10 +265,6 @@ module s6_two_channel_line_delay (
             edge_late <= edge_late_next;
             edge_error <= edge_error_next;
             edge_outside <= edge_outside_next;
-            parity <= parity_next;
-            // The delay stands from frame to frame: it is guarded.
-            moved <= follow_now | acquired;
-            wrong <= wrong_next;
         end
     end
 endmodule

@@ -15,12 +15,14 @@
 // cells are only counted.
 //
 // The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
-// with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
-// then stands, and for as long as it stands there: what is published is what was checked.
+// with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word before
+// that: at all four places its last bit has the same distance from a multiple of 15.
 // left counts cells down to the end of the frame, to_send the clock pulses that they need: the difference is under way. The
 // clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
-// shortest answer while its start bit may still be on the cable. under_way counts the difference once more: at the end of the
-// frame all three agree, unless one was upset.
+// shortest answer while its start bit may still be on the cable.
+//
+// With guards under_way counts the difference once more: at the end of the frame all three agree, unless one was upset. And a second
+// parallel CRC5 looks at the word where it is stored, for as long as it stands there: what is published is what was checked.
 module s6_two_channel_receiver (
     // System clock.
     input  wire         clock,
@@ -48,6 +50,12 @@ module s6_two_channel_receiver (
     input  wire   [5:0] payload_bits,
     // F2 follows F1; the selected additional data follow the position.
     input  wire         has_f2,
+    // Strobe, between two frames: the word and the CRC take these.
+    input  wire         put,
+    // For the word.
+    input  wire  [47:0] put_word,
+    // For the CRC.
+    input  wire   [4:0] put_crc,
     // The line is undefined: samples are not looked at.
     output wire         skipping,
     // The start bit may come now.
@@ -74,10 +82,10 @@ module s6_two_channel_receiver (
     output wire         f1,
     // Error bit 2, low = alarm; high in frames without it.
     output wire         f2,
-    // The serial register over the wire bits says the CRC is right.
-    output wire         serial_ok,
-    // The stored word fits the received CRC, now.
-    output wire         parallel_ok,
+    // The CRC of the bits as they came is the one received.
+    output wire         crc_ok,
+    // The word as it is stored now fits the received CRC; without guards as crc_ok.
+    output wire         stored_ok,
     // Payload, bit 0 = the bit received first, zeros above its width.
     output wire  [47:0] payload,
     // CRC as received; bit 4 came first.
@@ -103,6 +111,7 @@ module s6_two_channel_receiver (
     wire         is_taken;
     reg          skip_step;
     reg          covered_bit;
+    wire         crc_fits;
     wire         shift;
     wire         bit_in;
     wire         in50;
@@ -119,21 +128,13 @@ module s6_two_channel_receiver (
     wire         counts;
     wire   [5:0] width;
     reg    [6:0] cells_around;
-    wire         check_clear;
-    wire         check_word_bit;
-    wire         check_is_ok;
-    wire         serial_clear;
-    wire         serial_enable;
-    wire         serial_residue_ok;
-    wire   [4:0] serial_crc;
+    wire   [4:0] crc_crc;
     reg    [3:0] field; initial field = FIELD_DONE;
     reg    [3:0] field_next;
     reg    [6:0] left; initial left = 7'd0;
     reg    [6:0] left_next;
     reg    [6:0] to_send; initial to_send = 7'd0;
     reg    [6:0] to_send_next;
-    reg    [2:0] under_way; initial under_way = 3'd0;
-    reg    [2:0] under_way_next;
     reg   [49:0] word; initial word = 50'd0;
     reg   [49:0] word_next;
     reg    [3:0] covered; initial covered = 4'd0;
@@ -155,8 +156,7 @@ module s6_two_channel_receiver (
     reg          done_now; initial done_now = 1'b0;
     reg          used; initial used = 1'b0;
     reg          ended; initial ended = 1'b0;
-    reg          parallel_equal; initial parallel_equal = 1'b0;
-    reg          serial_good; initial serial_good = 1'b0;
+    reg          crc_equal; initial crc_equal = 1'b0;
     reg          refused; initial refused = 1'b0;
     reg          shift_now; initial shift_now = 1'b0;
     reg          bit_now; initial bit_now = 1'b0;
@@ -170,35 +170,12 @@ module s6_two_channel_receiver (
     reg    [1:0] infos_left_next;
     wire         _unused_ok = &{1'b0, start_supplement};
 
-    s6_two_channel_crc5_check u_check (
-        .clock(clock),
-        .reset(reset),
-        .clear(check_clear),
-        .word_bit(check_word_bit),
-        .crc_bit(crc_bit),
-        .bit_value(level),
-        .word(word[47:0]),
-        .has_f2(has_f2),
-        .f1(f1_bit),
-        .f2(f2_bit),
-        .is_ok(check_is_ok)
-    );
-    s6_two_channel_crc5_serial u_serial (
-        .clock(clock),
-        .reset(reset),
-        .clear(serial_clear),
-        .enable(serial_enable),
-        .bit_value(level),
-        .residue_ok(serial_residue_ok),
-        .crc(serial_crc)
+    s6_two_channel_crc5_word u_crc (
+        .word(word),
+        .covered(covered),
+        .crc(crc_crc)
     );
 
-    always @* begin
-        crc_calc_next = crc_calc;
-        if (last_payload) begin
-            crc_calc_next = serial_crc;
-        end
-    end
     assign width = payload_bits;
 
     always @* begin
@@ -252,8 +229,8 @@ module s6_two_channel_receiver (
             aligned_at = 4'd6;
         end
     end
-    assign check_word_bit = sample & (field == FIELD_PAYLOAD);
     assign is_taken = last_taken;
+    assign crc_fits = crc_bits == crc_calc;
 
     always @* begin
         // A frame, the next answer of a running clock, a supplement: what each begins with.
@@ -267,7 +244,6 @@ module s6_two_channel_receiver (
     always @* begin
         left_next = left;
         to_send_next = to_send;
-        under_way_next = under_way;
         skip_rounds_next = skip_rounds;
         field_next = field;
         f1_bit_next = f1_bit;
@@ -275,6 +251,7 @@ module s6_two_channel_receiver (
         infos_left_next = infos_left;
         word_next = word;
         covered_d = covered;
+        crc_calc_next = crc_calc;
         align_next = align;
         covered_bit = 1'b0;
         crc_bit = 1'b0;
@@ -288,13 +265,6 @@ module s6_two_channel_receiver (
         end
         if (one_less & !one_more) begin
             to_send_next = to_send - 7'd1;
-        end
-        // A third count, modulo 8, of the pulses that are on the cable.
-        if (pulse & !counts) begin
-            under_way_next = under_way + 3'd1;
-        end
-        if (counts & !pulse) begin
-            under_way_next = under_way - 3'd1;
         end
         // The parts of an answer, one after the other.
         case (field)
@@ -381,10 +351,15 @@ module s6_two_channel_receiver (
         if (shift) begin
             word_next = shifted;
         end
+        // What has been published is not needed here any more.
+        if (put) begin
+            word_next = {2'd0, put_word};
+        end
         if (shift | ((field == FIELD_SKIP) & skip_step)) begin
             covered_d = covered_next;
         end
         if (take_crc) begin
+            crc_calc_next = crc_crc;
             align_next = 1'b1;
         end
         if (align & !align_first & (covered == aligned_at)) begin
@@ -395,7 +370,6 @@ module s6_two_channel_receiver (
             left_next = {1'b0, payload_bits} + cells_around;
             to_send_next = {1'b0, payload_bits} + cells_around;
             word_next = 50'd0;
-            under_way_next = 3'd0;
             // Skipped cells take the counter to 0, where the covered bits start from.
             covered_d = SKIP_FROM;
             skip_rounds_next = 2'd0;
@@ -410,14 +384,14 @@ module s6_two_channel_receiver (
 
     always @* begin
         crc_bits_next = crc_bits;
-        // Both checks of the CRC.
+        // The CRC as received, and the guard's look at the stored word.
         if (crc_bit) begin
             crc_bits_next = {crc_bits[3:0], level};
         end
+        if (put) begin
+            crc_bits_next = put_crc;
+        end
     end
-    assign check_clear = start;
-    assign serial_clear = start;
-    assign serial_enable = covered_bit | crc_bit;
     // How far the answer is.
     assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
     assign hunting = hunting_now;
@@ -438,15 +412,14 @@ module s6_two_channel_receiver (
     assign f2 = f2_bit;
     assign crc_received = crc_bits;
     assign crc_computed = crc_calc;
-    assign serial_ok = serial_good;
-    assign parallel_ok = parallel_equal;
+    assign crc_ok = crc_equal;
+    assign stored_ok = crc_equal;
 
     always @(posedge clock) begin
         if (reset) begin
             field <= FIELD_DONE;
             left <= 7'd0;
             to_send <= 7'd0;
-            under_way <= 3'd0;
             word <= 50'd0;
             covered <= 4'd0;
             f1_bit <= 1'b0;
@@ -460,8 +433,7 @@ module s6_two_channel_receiver (
             done_now <= 1'b0;
             used <= 1'b0;
             ended <= 1'b0;
-            parallel_equal <= 1'b0;
-            serial_good <= 1'b0;
+            crc_equal <= 1'b0;
             refused <= 1'b0;
             shift_now <= 1'b0;
             bit_now <= 1'b0;
@@ -474,7 +446,6 @@ module s6_two_channel_receiver (
             field <= field_next;
             left <= left_next;
             to_send <= to_send_next;
-            under_way <= under_way_next;
             word <= word_next;
             covered <= covered_d;
             f1_bit <= f1_bit_next;
@@ -488,10 +459,9 @@ module s6_two_channel_receiver (
             last_taken <= last_taken_next;
             done_now <= is_taken;
             // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
-            used <= all_sent & (left == 7'd1) & (under_way == 3'd1);
-            ended <= all_sent & none_under_way & !(|under_way);
-            parallel_equal <= check_is_ok;
-            serial_good <= serial_residue_ok;
+            used <= all_sent & (left == 7'd1);
+            ended <= all_sent & none_under_way;
+            crc_equal <= crc_fits;
             refused <= start_sample & !edge_in_window;
             // One cycle later than the sample: the whole word hangs on this enable.
             shift_now <= covered_bit;
@@ -511,6 +481,7 @@ module s6_two_channel_receiver (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
+    localparam         SWAPS = 1'b1;
     wire [0:0] going_on = 1'd0;
     wire [0:0] has_f1 = 1'd1;
     wire [0:0] has_parameter = 1'd0;
@@ -518,7 +489,10 @@ module s6_two_channel_receiver (
     wire [1:0] infos = 2'd0;
     wire [0:0] waiting = 1'd0;
     wire [0:0] in_info = 1'd0;
-    // crc_as_received: The CRC of a frame that is all position is found right exactly if it equals one that is computed apart from it over the bits as sampled.
+    wire [0:0] low_separator = 1'd0;
+    wire [0:0] separator_then = 1'd0;
+    wire [0:0] new_block = 1'd0;
+    // crc_as_received: The CRC of a frame that is all position is found right exactly if it is what a serial register makes of the bits as sampled, at every width and command.
     // error_bits_as_received: F1, and F2 of EnDat 2.2, are the first samples after the start bit of a frame that is all position.
     // bits_counted: A frame that is all position is whole after F1, F2, as many position bits as were set and five CRC bits: no sample more or less.
     reg f_same; initial f_same = 1'b0;
@@ -533,23 +507,23 @@ module s6_two_channel_receiver (
     // a frame that is all position, begun at rest, whose settings are held: the properties are about these
     wire [12:0] f_now = {payload_bits, has_f1, has_f2, has_parameter, has_supplement, going_on, infos};
     wire f_simple = has_f1 & !has_parameter & !has_supplement & !going_on & (infos == 2'd0);
-    wire f_rest = (field == FIELD_DONE) & !shift_now & !last_payload & !take_crc & !last_taken & !waiting;
+    wire f_alone = !low_separator & !separator_then & !new_block;
+    wire f_rest = (field == FIELD_DONE) & !shift_now & !last_payload & !take_crc & !last_taken & !waiting & f_alone;
     wire f_held = f_same & (f_now == f_then);
     wire f_asked = (payload_bits != 6'd0) & (payload_bits <= 6'd48);
     wire [6:0] f_covered = {1'b0, payload_bits} + 7'd1 + {6'd0, has_f2};
     wire [6:0] f_of_crc = f_count - f_covered;
+    wire [2:0] f_crc_bits = f_of_crc[6] ? 3'd0 : f_of_crc[2:0];
+    // bits that the word has taken, and places for them
+    wire [6:0] f_in = (f_of_crc[6] ? f_count : f_covered) - {6'd0, shift_now};
+    wire [6:0] f_size = in5 ? 7'd5 : in20 ? 7'd20 : in35 ? 7'd35 : 7'd50;
+    reg f_taken; initial f_taken = 1'b0;
     // x^5 + x^3 + x + 1
     function [4:0] f_step (input [4:0] crc, input value);
         f_step = {crc[3], crc[2] ^ crc[4] ^ value, crc[1], crc[0] ^ crc[4] ^ value, crc[4] ^ value};
     endfunction
-    // the register of the serial check after the bits of the CRC that have come
-    function [4:0] f_after (input [4:0] crc, input [4:0] received, input [6:0] bits);
-        integer f_i;
-        begin
-            f_after = crc;
-            for (f_i = 4; f_i >= 0; f_i = f_i - 1)
-                if (f_i < bits) f_after = f_step(f_after, received[f_i]);
-        end
+    function [3:0] f_mod_15 (input [6:0] bits);
+        f_mod_15 = (bits >= 7'd45) ? bits - 7'd45 : (bits >= 7'd30) ? bits - 7'd30 : (bits >= 7'd15) ? bits - 7'd15 : bits;
     endfunction
     always @(posedge clock) begin
         f_same <= f_held;
@@ -565,6 +539,7 @@ module s6_two_channel_receiver (
             end
         end
         if (start_found) f_open <= 1'b1;
+        if (take_crc) f_taken <= 1'b1;
         if (start) begin
             f_same <= f_simple & f_rest & f_asked;
             f_then <= f_now;
@@ -573,22 +548,38 @@ module s6_two_channel_receiver (
             f_received <= 5'd0;
             f_f1 <= 1'b0;
             f_f2 <= 1'b1;
+            f_taken <= 1'b0;
         end
         if (start | aborts | reset | start_supplement) begin
             f_open <= 1'b0;
             f_whole <= 1'b0;
         end
-        if (reset | aborts | start_supplement) f_same <= 1'b0;
+        if (reset | aborts | start_supplement | (SWAPS & put)) f_same <= 1'b0;
     end
     wire f_answer = (field == FIELD_F1) | (field == FIELD_F2) | (field == FIELD_PAYLOAD) | (field == FIELD_CRC);
     always @* begin
-        `FORMAL_LABEL(crc_as_received) assert (!(f_held & done) | (serial_ok == (f_received == ~f_crc)));
-        `FORMAL_LABEL(crc_as_received_lemma_register) assert (!(f_held & (f_open | f_whole)) | (~serial_crc == f_after(f_crc, f_received, f_of_crc[6] ? 7'd0 : f_of_crc)));
+        `FORMAL_LABEL(crc_as_received) assert (!(f_held & done) | (crc_ok == (f_received == ~f_crc)));
+        `FORMAL_LABEL(crc_as_received_lemma_bits) assert (!(f_held & (f_open | f_whole)) | (((crc_bits ^ f_received) & ~(5'h1f << f_crc_bits)) == 5'd0));
+        `FORMAL_LABEL(crc_as_received_lemma_equal) assert (!(f_held & done) | (crc_equal == (crc_bits == crc_calc)));
+        `FORMAL_LABEL(crc_as_received_lemma_taken) assert (!(f_held & f_taken) | (crc_calc == ~f_crc));
+        if (f_held & (f_open | f_whole)) begin
+            `FORMAL_LABEL(crc_as_received_lemma_when) assert ((f_count >= f_covered) == (last_payload | take_crc | f_taken));
+            `FORMAL_LABEL(crc_as_received_lemma_soon) assert (!last_payload | ((f_count == f_covered) & !take_crc & !f_taken));
+            `FORMAL_LABEL(crc_as_received_lemma_then) assert (!take_crc | ((f_count <= f_covered + 7'd1) & !f_taken & !shift_now));
+            `FORMAL_LABEL(crc_as_received_lemma_shift) assert (!shift_now | ((f_count != 7'd0) & !f_taken));
+            if (!f_taken) begin
+                `FORMAL_LABEL(crc_as_received_lemma_word) assert (f_crc == (shift_now ? f_step(~crc_crc, bit_now) : ~crc_crc));
+                `FORMAL_LABEL(crc_as_received_lemma_zeros) assert ((word & ~(50'h3ffffffffffff << (f_size - f_in))) == 50'd0);
+                `FORMAL_LABEL(crc_as_received_lemma_above) assert ((word >> f_size) == 50'd0);
+                `FORMAL_LABEL(crc_as_received_lemma_count) assert (covered == f_mod_15(f_in));
+                `FORMAL_LABEL(crc_as_received_lemma_still) assert (!align);
+            end
+        end
         `FORMAL_LABEL(error_bits_as_received) assert (!(f_held & done) | ((f1 == f_f1) & (f2 == f_f2)));
         `FORMAL_LABEL(error_bits_as_received_lemma) assert (!(f_held & (f_open | f_whole)) | (((f_count == 7'd0) | (f1_bit == f_f1)) & (f2_bit == f_f2)));
         `FORMAL_LABEL(bits_counted) assert (!(f_held & done) | (f_whole & (f_count == f_covered + 7'd5)));
         if (f_held) begin
-            `FORMAL_LABEL(bits_counted_lemma_then) assert (f_simple & f_asked & !in_info & (infos_left == 2'd0));
+            `FORMAL_LABEL(bits_counted_lemma_then) assert (f_simple & f_asked & !in_info & (infos_left == 2'd0) & f_alone);
             `FORMAL_LABEL(bits_counted_lemma_open) assert (f_open == f_answer);
             `FORMAL_LABEL(bits_counted_lemma_whole) assert (!f_whole | (!f_open & (field == FIELD_DONE) & (f_count == f_covered + 7'd5)));
             `FORMAL_LABEL(bits_counted_lemma_done) assert (!(last_taken | waiting | done_now) | f_whole);
@@ -602,13 +593,25 @@ module s6_two_channel_receiver (
                 `FORMAL_LABEL(bits_counted_lemma_before) assert ((field == FIELD_SKIP) | (field == FIELD_START) | (field == FIELD_DONE));
                 if (field != FIELD_DONE) begin
                     `FORMAL_LABEL(bits_counted_lemma_clear) assert (f_count == 7'd0);
-                    `FORMAL_LABEL(crc_as_received_lemma_clear) assert ((f_crc == 5'd31) & (~serial_crc == 5'd31));
+                    `FORMAL_LABEL(crc_as_received_lemma_clear) assert ((f_crc == 5'd31) & (word == 50'd0) & !f_taken & !shift_now & !last_payload & !take_crc & !align);
                     `FORMAL_LABEL(error_bits_as_received_lemma_clear) assert (f2_bit & f_f2);
                 end
             end
-            if (field == FIELD_START) `FORMAL_LABEL(bits_counted_lemma_start) assert (left == f_covered + 7'd6);
+            if (field == FIELD_START) `FORMAL_LABEL(bits_counted_lemma_start) assert ((left == f_covered + 7'd6) & (covered == 4'd0));
             if (field == FIELD_SKIP) `FORMAL_LABEL(bits_counted_lemma_skip) assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shift_now & !align & !take_crc & !last_payload);
         end
+    end
+    // word_kept: The position that the receiver is given behind a frame stays in it until the next frame.
+    reg [52:0] f_given;
+    reg f_keeps; initial f_keeps = 1'b0;
+    always @(posedge clock) begin
+        if (put) f_given <= {put_word, put_crc};
+        if (put) f_keeps <= f_rest & !align;
+        if (start | reset) f_keeps <= 1'b0;
+    end
+    always @* if (f_keeps) begin
+        `FORMAL_LABEL(word_kept) assert ({payload, crc_bits} == f_given);
+        `FORMAL_LABEL(word_kept_lemma) assert (f_rest & !align);
     end
 `endif
 `undef FORMAL_LABEL

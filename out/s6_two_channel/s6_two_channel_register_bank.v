@@ -75,8 +75,6 @@ module s6_two_channel_register_bank (
     input  wire   [8:0] ring_in,
     // Byte to the last channel's ring block.
     output wire   [8:0] ring_out,
-    // The card's own settings are not what was written.
-    output wire         is_damaged,
     // The word is one of the stream's four.
     output wire         stream_selected,
     // Byte that was read from the words of stream, direct outputs and interrupt; 0 if it is none of them.
@@ -182,8 +180,7 @@ module s6_two_channel_register_bank (
         .byte_out(ring_byte_out),
         .word0(ring_word0),
         .word1(ring_word1),
-        .word2(ring_word2),
-        .is_damaged(is_damaged)
+        .word2(ring_word2)
     );
 
     always @* begin
@@ -273,7 +270,7 @@ module s6_two_channel_register_bank (
     always @* begin
         head = ring_byte_out;
         if (passes & write_now) begin
-            head = {^written, written};
+            head = {1'b0, written};
         end
     end
     assign take_byte = passes;

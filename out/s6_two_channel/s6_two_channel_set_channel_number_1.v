@@ -28,10 +28,6 @@ module s6_two_channel_set_channel_number_1 (
     input  wire         result_strobe,
     // Last good position.
     input  wire  [47:0] position,
-    // CRC that came with the position.
-    input  wire   [4:0] position_crc,
-    // The position came with F2.
-    input  wire         position_has_f2,
     // There is a good position.
     input  wire         position_valid,
     // The last result brought the position.
@@ -53,15 +49,12 @@ module s6_two_channel_set_channel_number_1 (
     // The result of the trigger has been replaced by another one (continuous clock).
     output wire         replaced
 );
-    localparam   [7:0] TAKEN_BIT = 8'd32;
-    localparam   [7:0] UPSET_CAUSE = 8'd31;
     localparam   [3:0] NUMBER = 4'd1;
 
     wire         is_own;
     wire         open;
     wire  [15:0] status;
-    wire         parity;
-    reg    [7:0] shown;
+    wire   [7:0] shown;
     reg          took; initial took = 1'b0;
     reg          took_next;
     reg          waiting; initial waiting = 1'b0;
@@ -69,9 +62,6 @@ module s6_two_channel_set_channel_number_1 (
     reg   [47:0] position_taken; initial position_taken = 48'd0;
     reg   [47:0] position_taken_next;
     wire         position_taken_reset;
-    reg          parity_taken; initial parity_taken = 1'b0;
-    reg          parity_taken_next;
-    wire         parity_taken_reset;
     reg   [15:0] status_taken; initial status_taken = 16'd0;
     reg   [15:0] status_taken_next;
     wire         status_taken_reset;
@@ -82,8 +72,6 @@ module s6_two_channel_set_channel_number_1 (
     reg    [7:0] byte_now; initial byte_now = 8'd0;
     reg    [7:0] byte_now_next;
     wire         byte_now_reset;
-    reg          upset_now; initial upset_now = 1'b0;
-    wire         upset_now_reset;
     wire         _unused_ok = &{1'b0, flags[11:0], flags[19]};
 
     always @* begin
@@ -133,37 +121,24 @@ module s6_two_channel_set_channel_number_1 (
     // No other result of another trigger gets in: what the channel does not have is 0.
     assign is_own = took & !open;
     assign position_taken_reset = take & !is_own;
-    assign parity_taken_reset = take & !is_own;
     assign status_taken_reset = take & !is_own;
     assign status = {1'b0, flags[18:12], fresh, position_valid, 1'b0, cause};
-    // The polynomial has the factor x + 1: CRC and what it is of, F1 = 0, F2 = 1 and the position, have the same parity.
-    assign parity = (^position_crc) ^ position_has_f2;
 
     always @* begin
         position_taken_next = position_taken;
-        parity_taken_next = parity_taken;
         status_taken_next = status_taken;
         took_taken_next = took_taken;
         missing_taken_next = missing_taken;
         if (take) begin
             position_taken_next = position;
-            parity_taken_next = parity;
             status_taken_next = status;
             took_taken_next = took;
             missing_taken_next = open;
         end
     end
-    // Told with the status byte; the bytes before it have gone out.
-    assign upset_now_reset = block != NUMBER;
     // A reset by deselection alone takes no logic.
     assign byte_now_reset = block != NUMBER;
-
-    always @* begin
-        shown = byte_now;
-        if (upset_now) begin
-            shown = (byte_now & TAKEN_BIT) | UPSET_CAUSE;
-        end
-    end
+    assign shown = byte_now;
     assign set_byte = shown;
 
     always @(posedge clock) begin
@@ -189,14 +164,6 @@ module s6_two_channel_set_channel_number_1 (
     end
 
     always @(posedge clock) begin
-        if (parity_taken_reset) begin
-            parity_taken <= 1'b0;
-        end else begin
-            parity_taken <= parity_taken_next;
-        end
-    end
-
-    always @(posedge clock) begin
         if (status_taken_reset) begin
             status_taken <= 16'd0;
         end else begin
@@ -209,14 +176,6 @@ module s6_two_channel_set_channel_number_1 (
             byte_now <= 8'd0;
         end else begin
             byte_now <= byte_now_next;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (upset_now_reset) begin
-            upset_now <= 1'b0;
-        end else begin
-            upset_now <= ((^position_taken) ^ parity_taken) & (byte_at == 3'd6);
         end
     end
 endmodule

@@ -10,9 +10,9 @@
 // confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
 // withdraw   ____________/\________    or: it has not; what was before comes back
 //
-// Where the position before is not kept, no position is valid after withdraw, until the next good one.
+// With Clears no position is valid after withdraw, until the next good one.
 //
-// What is held is guarded: its parity is taken when it has been loaded and compared in every cycle from then on. A register that
+// With guards the parity of what is held is taken when it has been loaded, and compared in every cycle from then on. A register that
 // was upset makes the position invalid, with a cause of its own.
 //
 // Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
@@ -78,19 +78,14 @@ module s6_two_channel_snapshot (
     // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
     // The position came with F2 (EnDat 2.2); its error bits are F1 = 0, F2 = 1.
-    output wire         position_has_f2
+    output wire         position_has_f2,
+    // Strobe: what gave the position takes the one that is held in its place.
+    output wire         swap
 );
-    localparam   [4:0] UPSET_CAUSE = 5'd31;
-    localparam  [19:0] UPSET_FLAG = 20'h80000;
-
     wire         take_good;
     wire         take_back;
-    wire         stamp_sum;
-    wire         parity_now;
-    wire         upset_now;
-    wire         moment_wrong;
+    reg   [15:0] age_now;
     reg          strobe; initial strobe = 1'b0;
-    reg          loaded; initial loaded = 1'b0;
     reg   [47:0] held; initial held = 48'd0;
     reg   [47:0] held_next;
     reg    [4:0] held_crc; initial held_crc = 5'd0;
@@ -99,32 +94,14 @@ module s6_two_channel_snapshot (
     reg    [5:0] held_width_next;
     reg          held_f2; initial held_f2 = 1'b0;
     reg          held_f2_next;
-    reg   [47:0] earlier; initial earlier = 48'd0;
-    reg   [47:0] earlier_next;
-    reg    [4:0] earlier_crc; initial earlier_crc = 5'd0;
-    reg    [4:0] earlier_crc_next;
     reg    [5:0] earlier_width; initial earlier_width = 6'd0;
     reg    [5:0] earlier_width_next;
     reg          earlier_f2; initial earlier_f2 = 1'b0;
     reg          earlier_f2_next;
-    reg   [31:0] earlier_stamp; initial earlier_stamp = 32'd0;
-    reg   [31:0] earlier_stamp_next;
     reg          earlier_valid; initial earlier_valid = 1'b0;
     reg          earlier_valid_next;
-    reg          earlier_parity; initial earlier_parity = 1'b0;
-    reg          earlier_parity_next;
     reg          unconfirmed; initial unconfirmed = 1'b0;
     reg          unconfirmed_next;
-    reg          parity; initial parity = 1'b0;
-    reg          parity_next;
-    reg          timed; initial timed = 1'b0;
-    reg          moment_parity; initial moment_parity = 1'b0;
-    reg          moment_parity_next;
-    reg          moment_sum; initial moment_sum = 1'b0;
-    reg          is_upset; initial is_upset = 1'b0;
-    reg          is_upset_next;
-    reg   [15:0] age_shown; initial age_shown = 16'd0;
-    wire         age_shown_reset;
     reg          valid; initial valid = 1'b0;
     reg          valid_next;
     reg          is_fresh; initial is_fresh = 1'b0;
@@ -147,24 +124,17 @@ module s6_two_channel_snapshot (
     reg    [4:0] computed; initial computed = 5'd0;
     reg    [4:0] computed_next;
 
-    always @* begin
-        moment_parity_next = moment_parity;
-        if (timed) begin
-            moment_parity_next = ^moment;
-        end
-    end
+    assign take_good = publish & good;
 
     always @* begin
         age_next = age;
         if (tick_us & !age_full) begin
             age_next = age + 16'd1;
         end
-        if (confirm & unconfirmed) begin
+        if (unconfirmed & confirm) begin
             age_next = 16'd0;
         end
     end
-    assign moment_wrong = good & !timed & (moment_sum ^ moment_parity);
-    assign take_good = publish & good & !moment_wrong;
     assign take_back = withdraw & unconfirmed;
 
     always @* begin
@@ -179,16 +149,21 @@ module s6_two_channel_snapshot (
 
     always @* begin
         moment_next = moment;
+        // Between a result and the end of its frame moment keeps the time stamp of the position before.
+        if (take_good) begin
+            moment_next = stamp;
+        end
         if (first_fall) begin
             moment_next = timestamp;
         end
     end
-    assign age_shown_reset = reset | unconfirmed | take_good;
-    // The guard. Its first look is at what has just been loaded: the position from where the CRC was checked, the time stamp from where its
-    // parity was, but for the last cycle.
-    assign stamp_sum = ^stamp;
-    assign parity_now = (^held) ^ stamp_sum ^ (^held_crc) ^ (^held_width) ^ held_f2;
-    assign upset_now = is_upset & !take_good & valid;
+
+    always @* begin
+        age_now = age;
+        if (unconfirmed) begin
+            age_now = 16'd0;
+        end
+    end
 
     always @* begin
         is_fresh_next = is_fresh;
@@ -201,18 +176,13 @@ module s6_two_channel_snapshot (
         held_f2_next = held_f2;
         stamp_next = stamp;
         valid_next = valid;
-        earlier_next = earlier;
-        earlier_crc_next = earlier_crc;
         earlier_width_next = earlier_width;
         earlier_f2_next = earlier_f2;
-        earlier_stamp_next = earlier_stamp;
         earlier_valid_next = earlier_valid;
-        earlier_parity_next = earlier_parity;
-        parity_next = parity;
         cause_held_next = cause_held;
         flags_held_next = flags_held;
         if (publish) begin
-            is_fresh_next = good & !moment_wrong;
+            is_fresh_next = good;
             count_next = count + 16'd1;
             received_next = crc_received_in;
             computed_next = crc_computed_in;
@@ -224,51 +194,32 @@ module s6_two_channel_snapshot (
             held_f2_next = has_f2_in;
             stamp_next = moment;
             valid_next = 1'b1;
-            earlier_next = held;
-            earlier_crc_next = held_crc;
             earlier_width_next = held_width;
             earlier_f2_next = held_f2;
-            earlier_stamp_next = stamp;
             earlier_valid_next = valid;
-            earlier_parity_next = parity;
-        end
-        is_upset_next = (parity_now ^ parity) & !loaded & !take_good & !take_back;
-        if (loaded) begin
-            parity_next = parity_now;
-            is_upset_next = stamp_sum ^ moment_parity;
         end
         if (take_back) begin
-            held_next = earlier;
-            held_crc_next = earlier_crc;
+            held_next = position_in;
+            held_crc_next = crc_received_in;
             held_width_next = earlier_width;
             held_f2_next = earlier_f2;
-            stamp_next = earlier_stamp;
+            stamp_next = moment;
             valid_next = earlier_valid;
-            parity_next = earlier_parity;
             is_fresh_next = 1'b0;
         end
         if (publish | late_fault) begin
             cause_held_next = cause_told;
             flags_held_next = flags_told;
         end
-        if (upset_now) begin
-            valid_next = 1'b0;
-            is_fresh_next = 1'b0;
-            cause_held_next = UPSET_CAUSE;
-            flags_held_next = flags_held | UPSET_FLAG;
-        end
-        if (publish & moment_wrong) begin
-            cause_held_next = UPSET_CAUSE;
-            flags_held_next = flags_told | UPSET_FLAG;
-        end
     end
+    assign swap = take_good;
     assign result_strobe = strobe;
     assign position = held;
     assign position_valid = valid;
     assign fresh = is_fresh;
     assign sequence_value = count;
     assign first_fall_timestamp = stamp;
-    assign age_us = age_shown;
+    assign age_us = age_now;
     assign cause = cause_held;
     assign flags = flags_held;
     assign crc_received = received;
@@ -280,24 +231,14 @@ module s6_two_channel_snapshot (
     always @(posedge clock) begin
         if (reset) begin
             strobe <= 1'b0;
-            loaded <= 1'b0;
             held <= 48'd0;
             held_crc <= 5'd0;
             held_width <= 6'd0;
             held_f2 <= 1'b0;
-            earlier <= 48'd0;
-            earlier_crc <= 5'd0;
             earlier_width <= 6'd0;
             earlier_f2 <= 1'b0;
-            earlier_stamp <= 32'd0;
             earlier_valid <= 1'b0;
-            earlier_parity <= 1'b0;
             unconfirmed <= 1'b0;
-            parity <= 1'b0;
-            timed <= 1'b0;
-            moment_parity <= 1'b0;
-            moment_sum <= 1'b0;
-            is_upset <= 1'b0;
             valid <= 1'b0;
             is_fresh <= 1'b0;
             count <= 16'd0;
@@ -311,46 +252,26 @@ module s6_two_channel_snapshot (
             computed <= 5'd0;
         end else begin
             strobe <= publish;
-            loaded <= take_good;
             held <= held_next;
             held_crc <= held_crc_next;
             held_width <= held_width_next;
             held_f2 <= held_f2_next;
-            earlier <= earlier_next;
-            earlier_crc <= earlier_crc_next;
             earlier_width <= earlier_width_next;
             earlier_f2 <= earlier_f2_next;
-            earlier_stamp <= earlier_stamp_next;
             earlier_valid <= earlier_valid_next;
-            earlier_parity <= earlier_parity_next;
             unconfirmed <= unconfirmed_next;
-            parity <= parity_next;
-            // The time stamp waits for its position as long as a frame lasts: it is guarded, too.
-            timed <= first_fall;
-            moment_parity <= moment_parity_next;
-            // Of the cycle before: the sum of all its bits is too long a way to what loads.
-            moment_sum <= ^moment;
-            is_upset <= is_upset_next;
             valid <= valid_next;
             is_fresh <= is_fresh_next;
             count <= count_next;
             moment <= moment_next;
             stamp <= stamp_next;
             age <= age_next;
-            // The age of the position before goes on until the new one is sure; a row of withdrawn ones must not look young.
+            // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look young.
             age_full <= &age;
             cause_held <= cause_held_next;
             flags_held <= flags_held_next;
             received <= received_next;
             computed <= computed_next;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (age_shown_reset) begin
-            age_shown <= 16'd0;
-        end else begin
-            age_shown <= age;
         end
     end
 
@@ -361,35 +282,43 @@ module s6_two_channel_snapshot (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    localparam         KEEPS_EARLIER = 1'b1;
-    localparam         NEVER_WITHDRAWS = 1'b0;
+    wire [0:0] latched = 1'd0;
+    wire [0:0] upset_now = 1'd0;
     // one_set: Position, its width, CRC, F2 and time change together, and only with a good result, or back when that was withdrawn.
     // one_number_each: Each result has the next number, and nothing else changes it.
     // bad_is_not_fresh: A result without good position leaves the position, and says that it is an earlier one.
     // faults_with_results: Cause and flags change only with a result, a fault after it, or when the stored position was found changed.
-    // restored unless NEVER_WITHDRAWS (positions that are never withdrawn): A position that is withdrawn gives way to the last good one, with its time, or to none if there was none; where that is not kept, no position is valid.
+    // restored unless NEVER_WITHDRAWS (positions that are never withdrawn): A position that is withdrawn before the next frame gives way to the last good one, with its time, or to none if there was none; where that is not kept, no position is valid.
     reg f_past_valid; initial f_past_valid = 1'b0;
-    reg [47:0] f_last; reg [31:0] f_last_stamp; reg f_last_valid;
-    wire [91:0] f_set = {held, held_width, held_crc, held_f2, stamp};
+    wire [91:0] f_set = {held, held_crc, held_width, held_f2, stamp};
     always @(posedge clock) begin
         f_past_valid <= 1'b1;
-        if (take_good) begin
-            f_last <= held;
-            f_last_stamp <= stamp;
-            f_last_valid <= valid;
-        end
         if (f_past_valid & !$past(reset)) begin
             `FORMAL_LABEL(one_set) assert ($stable(f_set) | $past(take_good | take_back));
             `FORMAL_LABEL(one_set_strobe) assert (result_strobe == $past(publish));
             `FORMAL_LABEL(one_number_each) assert (count == $past(count) + {15'd0, $past(publish)});
             if ($past(publish & !good & !take_back)) `FORMAL_LABEL(bad_is_not_fresh) assert (!is_fresh & $stable(f_set));
             if (!$past(publish | late_fault | upset_now)) `FORMAL_LABEL(faults_with_results) assert ($stable({cause_held, flags_held}));
-            if (!NEVER_WITHDRAWS & $past(take_back & !take_good)) `FORMAL_LABEL(restored) assert (!is_fresh & (KEEPS_EARLIER ? (held == $past(earlier)) & (stamp == $past(earlier_stamp)) & (valid == $past(earlier_valid & !upset_now)) : !valid));
         end
     end
-    // at rest the stored position fits its parity; the proof of a frame begins and ends there
-    wire f_whole = loaded | (parity_now == parity);
-    always @* `FORMAL_LABEL(restored_same) assert (!KEEPS_EARLIER | !f_past_valid | !unconfirmed | ((f_last == earlier) & (f_last_stamp == earlier_stamp) & (f_last_valid == earlier_valid)));
+    reg [91:0] f_last; reg f_last_valid;
+    // the next frame has begun
+    reg f_newer; initial f_newer = 1'b0;
+    always @(posedge clock) begin
+        if (take_good) begin
+            f_last <= f_set;
+            f_last_valid <= valid;
+            f_newer <= 1'b0;
+        end
+        if (first_fall | latched) f_newer <= 1'b1;
+        if (reset) f_newer <= 1'b0;
+    end
+    always @* `FORMAL_LABEL(restored_same) assert (!f_past_valid | !unconfirmed | f_newer | ({earlier_width, earlier_f2, moment, earlier_valid} == {f_last[38:0], f_last_valid}));
+    // the receiver has the position meanwhile: word_kept
+    always @(posedge clock) if (f_past_valid & !$past(reset)) begin
+        if ($past(take_back & !take_good & !f_newer)) `FORMAL_LABEL(restored) assert (!is_fresh & (f_set == $past({position_in, crc_received_in, f_last[38:0]})) & (valid == $past(f_last_valid & !upset_now)));
+    end
+    wire f_whole = 1'b1;
 `endif
 `undef FORMAL_LABEL
 `endif

@@ -59,18 +59,14 @@ module s6_two_channel_transaction (
     input  wire         done,
     // Strobe: the answer with all its additional data, or the supplement, is complete.
     input  wire         finished,
-    // Settings of the frame are not what they were at its start.
-    input  wire         settings_upset,
     // Error bit 1, high = alarm.
     input  wire         f1,
     // Error bit 2, low = alarm; high in frames without it.
     input  wire         f2,
-    // The serial register over the wire bits says the CRC is right.
-    input  wire         serial_ok,
-    // The stored word fits the received CRC, now.
-    input  wire         parallel_ok,
-    // The tracked delay is not what was measured.
-    input  wire         delay_upset,
+    // The CRC of the bits as they came is the one received.
+    input  wire         crc_ok,
+    // The word as it is stored now fits the received CRC; without guards as crc_ok.
+    input  wire         stored_ok,
     // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
     // Longest wait for the start bit after the turnaround, in microseconds.
@@ -164,12 +160,10 @@ module s6_two_channel_transaction (
     wire         owed;
     reg          proof;
     reg          plugged;
-    wire         vanished;
     wire         afresh;
     wire         last_edge_all_sent;
     wire         last_edge_holds;
     wire         last_edge_stalled;
-    wire         verdict_settings_upset;
     wire         verdict_is_late;
     wire         verdict_taken;
     wire         verdict_is_pending;
@@ -243,7 +237,6 @@ module s6_two_channel_transaction (
         .answer_taken(answer_taken),
         .prove(proof),
         .is_measuring(measuring),
-        .settings_upset(verdict_settings_upset),
         .give_up(give_up),
         .is_late(verdict_is_late),
         .refuse(refuse),
@@ -251,8 +244,8 @@ module s6_two_channel_transaction (
         .lost(lost),
         .f1(f1),
         .f2(f2),
-        .serial_ok(serial_ok),
-        .parallel_ok(parallel_ok),
+        .crc_ok(crc_ok),
+        .stored_ok(stored_ok),
         .taken(verdict_taken),
         .is_pending(verdict_is_pending),
         .is_received(verdict_is_received),
@@ -275,13 +268,10 @@ module s6_two_channel_transaction (
     assign owed = once_more & owing;
     assign wanted = triggered | owed;
     assign endless = |(timer & FRAME_US);
-    // A frame that has vanished: a register was upset.
-    assign vanished = (owing & !once_more) | under_way;
     // Where the recovery time begins.
     assign in_tail = phase == PHASE_TAIL;
     assign in_recovery = phase == PHASE_RECOVERY;
     assign last_cell = in_tail & was_center;
-    assign verdict_settings_upset = settings_upset | delay_upset;
     assign known = is_calibrated;
 
     always @* begin
@@ -328,10 +318,6 @@ module s6_two_channel_transaction (
                         give_up = 1'b1;
                     end
                 end
-                if (vanished) begin
-                    found = UPSET;
-                    give_up = 1'b1;
-                end
             end
             PHASE_READY: begin
                 // A frame may begin.
@@ -356,10 +342,6 @@ module s6_two_channel_transaction (
                         found = UNKNOWN_COMMAND;
                         refuse = 1'b1;
                     end
-                end
-                if (vanished) begin
-                    found = UPSET;
-                    give_up = 1'b1;
                 end
             end
             PHASE_FIRST_LOW: begin
@@ -544,7 +526,8 @@ module s6_two_channel_transaction (
             owing_next = 1'b1;
         end
     end
-    assign verdict_is_late = answered;
+    // Of a frame that measured nothing has been published.
+    assign verdict_is_late = answered & !verdict_once_more;
     // Triggers that are lost, and the result that is owed.
     assign lost = trigger & ((!accept & !idle) | owing);
 
@@ -556,7 +539,7 @@ module s6_two_channel_transaction (
         end
     end
     // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
-    assign afresh = calibrate | plugged | delay_upset;
+    assign afresh = calibrate | plugged;
 
     always @* begin
         is_calibrated_next = is_calibrated;
@@ -704,6 +687,11 @@ module s6_two_channel_transaction (
         `FORMAL_LABEL(one_result_per_trigger_lemma_frame) assert (!f_in_frame | owing | answered);
         `FORMAL_LABEL(one_result_per_trigger_lemma_once) assert (!answered | !verdict_is_pending | aborts);
         `FORMAL_LABEL(one_result_per_trigger_lemma_where) assert (!answered | aborts | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
+        `FORMAL_LABEL(one_result_per_trigger_lemma_tail) assert ((phase != PHASE_TAIL) | verdict_is_pending | aborts);
+        `FORMAL_LABEL(one_result_per_trigger_lemma_sampled) assert (!tail_sampled | !f_in_frame | (phase == PHASE_RECOVERY));
+        `FORMAL_LABEL(one_result_per_trigger_lemma_proved) assert ((phase != PHASE_RECOVERY) | aborts | !owing | (tail_sampled ? answered | once_more | verdict_once_more : verdict_is_pending));
+        `FORMAL_LABEL(one_result_per_trigger_lemma_told) assert (!answered | !owing | publish | verdict_once_more | f_tells | aborts);
+        `FORMAL_LABEL(one_result_per_trigger_lemma_owing) assert (f_in_frame | !owing | once_more | aborts | publish);
         `FORMAL_LABEL(one_result_per_trigger_lemma_open) assert (f_owed == (owing | f_tells | publish));
     end
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin

@@ -26,8 +26,6 @@ module s6_two_channel_verdict (
     input  wire         prove,
     // The frame measures the delay: a good answer to a trigger is not published, its position is asked for once more.
     input  wire         is_measuring,
-    // Settings of the frame have changed under way.
-    input  wire         settings_upset,
     // Strobe: the frame is aborted.
     input  wire         give_up,
     // With give_up: its result has been published.
@@ -42,10 +40,10 @@ module s6_two_channel_verdict (
     input  wire         f1,
     // Error bit 2, low = alarm; high in frames without it.
     input  wire         f2,
-    // The serial register over the wire bits says the CRC is right.
-    input  wire         serial_ok,
-    // The stored word fits the received CRC, now.
-    input  wire         parallel_ok,
+    // The CRC of the bits as they came is the one received.
+    input  wire         crc_ok,
+    // The word as it is stored now fits the received CRC; without guards as crc_ok.
+    input  wire         stored_ok,
     // Strobe: answer_taken, a cycle later.
     output wire         taken,
     // An answer has been taken, and not been published yet.
@@ -89,7 +87,6 @@ module s6_two_channel_verdict (
     wire         crc_bad;
     wire         bad_now;
     wire         proven;
-    wire         upset;
     wire         measured;
     reg   [19:0] seen; initial seen = 20'd0;
     reg          taken_now; initial taken_now = 1'b0;
@@ -119,7 +116,7 @@ module s6_two_channel_verdict (
         .cause(cause_told)
     );
 
-    assign crc_bad = !(serial_ok & parallel_ok);
+    assign crc_bad = !(crc_ok & stored_ok);
 
     always @* begin
         was_bad_next = was_bad;
@@ -140,8 +137,7 @@ module s6_two_channel_verdict (
             pending_next = 1'b0;
         end
     end
-    assign upset = proven & !bad_now & settings_upset;
-    assign measured = proven & is_measuring & !bad_now & !upset;
+    assign measured = proven & is_measuring & !bad_now;
 
     always @* begin
         found_all = seen;
@@ -155,12 +151,12 @@ module s6_two_channel_verdict (
             if (!f2) begin
                 found_all = found_all | F2_CLEAR;
             end
-            if (!parallel_ok) begin
+            if (!stored_ok) begin
                 found_all = found_all | PARALLEL_WRONG;
             end
         end
         // A frame is not given up for nothing: the state that says so was upset.
-        if (upset | (gave_up_now & !(|seen))) begin
+        if (gave_up_now & !(|seen)) begin
             found_all = found_all | STORED_UPSET;
         end
         // That is for the result to say.
@@ -229,7 +225,7 @@ module s6_two_channel_verdict (
             overrun <= overrun_next;
             was_bad <= was_bad_next;
             publish_now <= (proven & !measured) | refused | (gave_up_now & !gave_up_late);
-            good_now <= proven & !bad_now & !upset;
+            good_now <= proven & !bad_now;
             once_more_now <= measured;
             pending <= pending_next;
             withdraw_now <= gave_up_late;
@@ -249,8 +245,9 @@ module s6_two_channel_verdict (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
+    wire [0:0] settings_upset = 1'd0;
     wire [0:0] announced = 1'd0;
-    // good_means: A position is good only if both CRC checks, F1 and F2 said so, its settings were whole, and an answer was taken.
+    // good_means: A position is good only if the CRC, F1 and F2 said so, its settings were whole, and an answer was taken.
     // one_result_each: An answer gives one result at most: none without a frame that was answered, refused, late or given up.
     // lost_is_told: A trigger that was lost is kept until a result tells it.
     reg f_past_valid; initial f_past_valid = 1'b0;
@@ -263,7 +260,7 @@ module s6_two_channel_verdict (
     reg f_checked; initial f_checked = 1'b0;
     reg f_open; initial f_open = 1'b0;
     always @(posedge clock) begin
-        f_checked <= !reset & prove & (f_open | taken_now) & serial_ok & parallel_ok & !f1 & f2 & !settings_upset;
+        f_checked <= !reset & prove & (f_open | taken_now) & crc_ok & stored_ok & !f1 & f2 & !settings_upset;
         f_reason <= !reset & ((prove & (f_open | taken_now)) | refused | announced | gave_up_now);
         if (taken_now) f_open <= 1'b1;
         if (reset | gave_up_now | (prove & (f_open | taken_now))) f_open <= 1'b0;

@@ -55,7 +55,7 @@ impl Case {
                 endat_hz as f64 / 1e6
             ),
             system_hz,
-            features: Features::NONE,
+            features: Features::CARD,
             settings,
             encoder,
             line: LineConfig::cable(cable_m),

@@ -134,7 +134,7 @@ impl Scenario {
     pub fn features(&self) -> Features {
         Features {
             requests: !self.requests.is_empty(),
-            ..Features::default()
+            ..Features::CARD
         }
     }
 

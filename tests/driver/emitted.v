@@ -40,28 +40,28 @@ module emitted (
 
     axi_lite_card_tb_encoder #(.CHANNEL(0), .HAS_PARAMETERS(1), .POSITION_BITS(29)) encoder_0 (
         .clk(endat_clk[0] | ~plugged[0]), .driver_oe(card_oe[0]), .driver_data(card_data[0]), .position(position_0),
-        .f1(1'b0), .f2(1'b1), .spoil_crc(spoil_crc[0]), .no_start(1'b0), .stay_high(1'b0), .goes_on(1'b0),
+        .f1(1'b0), .f2(1'b1), .spoil_crc({4'd0, spoil_crc[0]}), .no_start(1'b0), .stay_high(1'b0), .goes_on(1'b0),
         .width(6'd0), .start_ps(32'd0), .may_stop(1'b0),
         .oe(encoder_oe[0]), .data(encoder_data[0]), .crc(), .info_1(), .info_2(),
         .frames(frames[31:0]), .errors(errors[31:0])
     );
     axi_lite_card_tb_encoder #(.CHANNEL(1), .HAS_PARAMETERS(1), .POSITION_BITS(25)) encoder_1 (
         .clk(endat_clk[1] | ~plugged[1]), .driver_oe(card_oe[1]), .driver_data(card_data[1]), .position(position_1),
-        .f1(1'b0), .f2(1'b1), .spoil_crc(spoil_crc[1]), .no_start(1'b0), .stay_high(1'b0), .goes_on(1'b0),
+        .f1(1'b0), .f2(1'b1), .spoil_crc({4'd0, spoil_crc[1]}), .no_start(1'b0), .stay_high(1'b0), .goes_on(1'b0),
         .width(6'd0), .start_ps(32'd0), .may_stop(1'b0),
         .oe(encoder_oe[1]), .data(encoder_data[1]), .crc(), .info_1(), .info_2(),
         .frames(frames[63:32]), .errors(errors[63:32])
     );
     spi_card_tb_encoder #(.CHANNEL(0), .HAS_PARAMETERS(1), .POSITION_BITS(29)) encoder_2 (
         .clk(endat_clk[2] | ~plugged[2]), .driver_oe(card_oe[2]), .driver_data(card_data[2]), .position(position_0),
-        .f1(1'b0), .f2(1'b1), .spoil_crc(spoil_crc[2]), .no_start(1'b0), .stay_high(1'b0), .goes_on(1'b0),
+        .f1(1'b0), .f2(1'b1), .spoil_crc({4'd0, spoil_crc[2]}), .no_start(1'b0), .stay_high(1'b0), .goes_on(1'b0),
         .width(6'd0), .start_ps(32'd0), .may_stop(1'b0),
         .oe(encoder_oe[2]), .data(encoder_data[2]), .crc(), .info_1(), .info_2(),
         .frames(frames[95:64]), .errors(errors[95:64])
     );
     spi_card_tb_encoder #(.CHANNEL(1), .HAS_PARAMETERS(1), .POSITION_BITS(25)) encoder_3 (
         .clk(endat_clk[3] | ~plugged[3]), .driver_oe(card_oe[3]), .driver_data(card_data[3]), .position(position_1),
-        .f1(1'b0), .f2(1'b1), .spoil_crc(spoil_crc[3]), .no_start(1'b0), .stay_high(1'b0), .goes_on(1'b0),
+        .f1(1'b0), .f2(1'b1), .spoil_crc({4'd0, spoil_crc[3]}), .no_start(1'b0), .stay_high(1'b0), .goes_on(1'b0),
         .width(6'd0), .start_ps(32'd0), .may_stop(1'b0),
         .oe(encoder_oe[3]), .data(encoder_data[3]), .crc(), .info_1(), .info_2(),
         .frames(frames[127:96]), .errors(errors[127:96])

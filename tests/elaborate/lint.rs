@@ -55,7 +55,7 @@ fn blocks() -> Vec<(Box<dyn Block>, &'static str)> {
             "channel",
         ),
         (
-            Box::new(AsyncDsp::new(&TFormatStart::default())),
+            Box::new(AsyncDsp::new(&TFormatStart::default(), true)),
             "async_dsp",
         ),
         (Box::new(Card::new(&card)), "card"),

@@ -9,7 +9,7 @@ pub const BASES: [&str; 8] = [
      sources = [\"pin\"]\n[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n[trigger]\nsample_hz = 100\nsources = [\"timer\"]\n\
      [link]\nbaud = 2_000_000\nread_hz = 50\n[host]\nbus = \"uart\"\n[service]\nparts = [\"requests\", \"diagnosis\", \"continuous\"]\n\
      infos = [0x4C]\n[line]\nparts = [\"alignment\", \"margin\"]\nphase = \"frame\"\nfixed_delay_ns = 400\ndrift_limit_ns = 40\nsamples = 3\n\
-     [outputs]\nparts = []\n[safety]\nparts = [\"second_interface\", \"error_test\"]\nerror_test_ms = 50\n\
+     [outputs]\nparts = []\n[safety]\nparts = [\"second_interface\", \"error_test\"]\nerror_test_ms = 50\nupset_guards = true\nrestore = false\n\
      [stream]\nfifo_bytes = 1024\nstart = \"push\"\nadditional_data = true\n[device]\ninitial_values = true\n[board]\nname = \"papilio_pro\"\n\
      [pins]\ntrigger_i = \"A0\"\n",
     "name = \"base\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
@@ -23,11 +23,12 @@ pub const BASES: [&str; 8] = [
      single_turn_bits = 25\nmulti_turn_bits = 0\n\
      code = \"gray\"\nparity = \"odd\"\ntwice = true\nbit_delay_ns = 300\ntst_ns = 2_000\nfilter_ns = 20\nrecovery_min_ns = 12_000\nrecovery_max_ns = 20_000\ncable_m = 20\n\
      bits_before = [\"ignored\"]\nbits_after = [\"alarm\"]\nend_low = true\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\n",
-    "name = \"receiver\"\n[host]\nbus = \"dsp\"\n[[channel]]\nprotocol = \"t_format\"\nencoder = \"one\"\nbit_hz = 2_500_000\n\
-     request = 6\nreply_gap_us = 30\nfield_gap_us = 3\nfilter_cycles = 2\n[device]\ninitial_values = false\n",
     // A board with few pins.
     "name = \"few_pins\"\n[clock]\nsystem_hz = 30_000_000\n[endat]\nclock_hz = 3_000_000\n[[channel]]\nposition_bits = 25\n\
      command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"spi\"\n[board]\nname = \"icebreaker\"\n[pins]\n",
     "name = \"least\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
      command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"axi_lite\"\n[service]\n[line]\n[outputs]\n[safety]\n[stream]\n",
+    // Last: a card takes more keys of its tables.
+    "name = \"receiver\"\n[host]\nbus = \"dsp\"\n[[channel]]\nprotocol = \"t_format\"\nencoder = \"one\"\nbit_hz = 2_500_000\n\
+     request = 6\nreply_gap_us = 30\nfield_gap_us = 3\nfilter_cycles = 2\n[safety]\nupset_guards = true\n[device]\ninitial_values = false\n",
 ];

@@ -39,6 +39,8 @@ fn projects() -> Vec<Project> {
         second_interface: true,
         second_receiver: true,
         error_test_ms: 500,
+        upset_guards: true,
+        restore: false,
     };
     let text = preset("s6_two_channel").unwrap();
     // A good name, and a keyword of SystemRDL.

@@ -31,6 +31,9 @@ const FULL: &str = "name = \"full\"\n[clock]\nsystem_hz = 60_000_000\n[endat]\nc
 /// What the small card has not, and the full one neither.
 const REQUESTS: &str = "[service]\nparts = [\"requests\"]\n";
 
+/// What finds upsets, and what a port without bus leaves out.
+const GUARDS: &str = "[safety]\nupset_guards = true\nrestore = true\n";
+
 fn subject(text: &str) -> Subject {
     Subject::new(&parse("bare.toml", text).unwrap()).unwrap()
 }
@@ -51,7 +54,7 @@ fn all(design: &Design) -> Vec<(String, rtl_design::elaborate::properties::Prope
 
 #[test]
 fn every_property_has_a_name_of_its_own_words_and_assertions() {
-    let subject = subject(FULL);
+    let subject = subject(&format!("{FULL}{GUARDS}"));
     let mut blocks: BTreeMap<String, String> = BTreeMap::new();
     for (block, property) in all(&subject.design) {
         let name = property.name.clone();
@@ -153,7 +156,7 @@ fn all_are_proved(subject: &Subject) {
 }
 
 /// The small card first; what it does not have, or does not use, breaks another one.
-fn cards() -> [Subject; 5] {
+fn cards() -> [Subject; 6] {
     let processor = BARE
         .replace("\"bare\"", "\"processor\"")
         .replace("\"none\"", "\"apb\"");
@@ -162,9 +165,10 @@ fn cards() -> [Subject; 5] {
         panic!("async_dsp is a receiver");
     };
     let [bare, full, requests, processor] =
-        [BARE, FULL, &format!("{BARE}{REQUESTS}"), &processor].map(subject);
+        [BARE, FULL, &format!("{BARE}{REQUESTS}{GUARDS}"), &processor].map(subject);
+    let guarded = subject(&format!("{FULL}{GUARDS}"));
     let receiver = Subject::receiver(&receiver).unwrap();
-    [bare, full, requests, processor, receiver]
+    [bare, full, requests, processor, receiver, guarded]
 }
 
 /// Needs no outside tool.

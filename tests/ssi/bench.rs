@@ -217,8 +217,8 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "parity of both copies together",
         PORT,
-        "first_too_next = 1'b1;\n                ones_next = 1'b0;\n                left_next = bits;",
-        "first_too_next = 1'b1;\n                left_next = bits;",
+        "first_next = 1'b1;\n                ones_next = 1'b0;\n                left_next = bits;",
+        "first_next = 1'b1;\n                left_next = bits;",
     ),
     mutation(
         "parity not looked at",

@@ -40,9 +40,9 @@ fn usage(subject: &Subject, family: &Family) -> Usage {
     found.unwrap().usage
 }
 
-/// Families that a subject is measured for. Of fronts and guards the pages tell one; `area` measures both.
+/// Families that a subject is measured for. Of fronts the pages tell one; `area` measures both.
 fn families(subject: &Subject) -> &'static [Family] {
-    match subject.without.is_some() || subject.name.starts_with("card_") {
+    match subject.name.starts_with("card_") {
         true => &[XC6S],
         false => &[XC6S, ICE40],
     }
@@ -122,16 +122,4 @@ fn area_is_exactly_what_the_table_says() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(TABLE);
     tools::assert_committed(&path, &found);
     assert!(above.is_empty(), "{above:?}");
-}
-
-/// Needs no outside tool: the text that takes a guard away is in the emission exactly once.
-#[test]
-fn every_guard_can_be_taken_away() {
-    let whole = subject("channel");
-    let lacking = subjects().iter().filter(|s| s.without.is_some());
-    for subject in lacking {
-        let same = subject.files().into_iter().zip(whole.files());
-        let changed = same.filter(|(ours, whole)| ours.text != whole.text);
-        assert!(changed.count() > 1, "{}", subject.name);
-    }
 }

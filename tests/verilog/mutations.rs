@@ -45,15 +45,15 @@ impl Mutation {
 pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "parallel CRC: wrong constant for 31 bits",
-        "crc5_check",
-        "TERM_2 = 5'd13;",
-        "TERM_2 = 5'd12;",
+        "crc5_word",
+        "CONSTANT_1 = 5'd10;",
+        "CONSTANT_1 = 5'd11;",
     ),
     mutation(
-        "serial CRC: wrong polynomial",
-        "crc5_serial",
-        "POLYNOMIAL = 5'd11;",
-        "POLYNOMIAL = 5'd9;",
+        "CRC: its first bit not compared",
+        "receiver",
+        "crc_fits = crc_bits == crc_calc;",
+        "crc_fits = crc_bits[3:0] == crc_calc[3:0];",
     ),
     mutation(
         "one clock pulse fewer",
@@ -112,7 +112,7 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "a bad frame replaces the last good position",
         "snapshot",
-        "take_good = publish & good & !moment_wrong;",
+        "take_good = publish & good;",
         "take_good = publish;",
     ),
     mutation(

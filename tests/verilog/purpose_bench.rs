@@ -52,9 +52,9 @@ const BROKEN: &[Mutation] = &[
     ),
     mutation(
         "a written clock rate is not taken",
-        "frame_settings",
-        "period_held_next = period_cycles;",
-        "period_held_next = 11'd20;",
+        "channel_registers_1",
+        "period_cycles = config0[10:0];",
+        "period_cycles = 11'd20;",
     ),
 ];
 

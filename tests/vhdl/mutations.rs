@@ -5,22 +5,22 @@ use crate::verilog::mutations::{mutation, Mutation};
 /// All of them.
 pub const MUTATIONS: &[Mutation] = &[
     mutation(
-        "serial CRC: wrong polynomial",
-        "crc5_serial",
-        "to_unsigned(11, 5)",
-        "to_unsigned(9, 5)",
+        "parallel CRC: wrong polynomial",
+        "crc5_word",
+        "\"110\" & x\"e14\"",
+        "\"110\" & x\"e15\"",
     ),
     mutation(
         "parallel CRC: a part of the word is not in it",
-        "crc5_check",
+        "crc5_word",
         "word(14 downto 0) xor word(29 downto 15)",
         "word(14 downto 0)",
     ),
     mutation(
         "parallel CRC: compared the other way",
-        "crc5_check",
-        "'1' when sum = received else '0'",
-        "'1' when sum /= received else '0'",
+        "receiver",
+        "'1' when crc_bits = crc_calc else '0'",
+        "'1' when crc_bits /= crc_calc else '0'",
     ),
     mutation(
         "a clock pulse more",

@@ -11,8 +11,11 @@ use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 
 const CONFIGURATION: &str = include_str!("card.toml");
+/// What both cards have.
+const GUARDS: &str = "[safety]\nupset_guards = true\n";
 /// What the card with every monitor has besides.
-const MONITORS: &str = "[safety]\nparts = [\"recovery_counter\", \"second_interface\", \"second_receiver\", \"error_test\"]\n";
+const MONITORS: &str =
+    "parts = [\"recovery_counter\", \"second_interface\", \"second_receiver\", \"error_test\"]\n";
 /// Longest wait of a request for its frame: one at least, as milliseconds are counted.
 const REQUEST_MS: u16 = 2;
 /// The service waits for one millisecond more than it is told: with this one for none.
@@ -60,7 +63,7 @@ pub fn in_channel(name: &str) -> Option<&str> {
 /// The card's configuration.
 pub(super) fn configuration(subject: CardSubject) -> Result<CardConfig, GenError> {
     let monitors = if subject.has_monitors() { MONITORS } else { "" };
-    let text = format!("{CONFIGURATION}{monitors}");
+    let text = format!("{CONFIGURATION}{GUARDS}{monitors}");
     let project = config::parse("card.toml", &text).map_err(|all| {
         let all: Vec<String> = all.iter().map(|d| d.to_string()).collect();
         GenError::input(all.join("; "))

@@ -33,7 +33,7 @@ use rust_hdl::prelude::Block;
 
 /// The receiver's design.
 pub fn design(receiver: &Receiver) -> Result<Design, GenError> {
-    let mut block = AsyncDsp::new(&receiver.start);
+    let mut block = AsyncDsp::new(&receiver.start, receiver.upset_guards);
     block.connect_all();
     let design = elaborate(&block, &receiver.name).map_err(|e| GenError::fault("design", &e))?;
     Ok(Design {

@@ -53,6 +53,7 @@ impl CardCore {
                     config.channels[i].protocol(),
                     n.own_triggers != 0,
                     n.parts,
+                    config.safety.upset_guards,
                 )
             }),
             set_byte: each(n.sets + n.streams),

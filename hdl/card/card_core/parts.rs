@@ -39,6 +39,8 @@ fn line(card: &CardConfig) -> Features {
         margin: card.line.margin,
         double_edge: card.line.double_edge,
         second_receiver: card.safety.second_receiver,
+        upset_guards: card.safety.upset_guards,
+        restore: true,
         ..Features::NONE
     }
 }
@@ -80,7 +82,8 @@ pub fn services(card: &CardConfig) -> usize {
 pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
     let channel = &card.channels[index];
     if !channel.is_endat() {
-        return EncoderPort::asked(&channel.spoken, index < served_channels(card));
+        let has_io = index < served_channels(card);
+        return EncoderPort::asked(&channel.spoken, card.safety.upset_guards, has_io);
     }
     let service = card.service.requests.then_some(service);
     EncoderPort::served(
@@ -96,13 +99,16 @@ pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> E
 pub fn bare_port(card: &CardConfig) -> EncoderPort {
     let (channel, service) = (&card.channels[0], service_times(card));
     if !channel.is_endat() {
-        return EncoderPort::asked(&channel.spoken, false);
+        return EncoderPort::asked(&channel.spoken, card.safety.upset_guards, false);
     }
     EncoderPort::with_line(
         times(card, channel),
         card.service.requests.then_some(&service),
         channel.wants_short_recovery(),
-        line(card),
+        Features {
+            restore: card.safety.restore,
+            ..line(card)
+        },
         line_start(card),
     )
 }

@@ -4,11 +4,21 @@ use crate::regs::{CHANNEL_CONFIG, RESULT};
 use crate::testing::tick;
 
 fn new() -> ChannelRegisters {
-    let mut uut = ChannelRegisters::new(&test_config(), 0);
+    made(&test_config())
+}
+
+fn made(config: &CardConfig) -> ChannelRegisters {
+    let mut uut = ChannelRegisters::new(config, 0);
     uut.ring_home.next = true;
     uut.connect_all();
     step(&mut uut);
     uut
+}
+
+fn guarded_registers() -> ChannelRegisters {
+    let mut config = test_config();
+    config.safety.upset_guards = true;
+    made(&config)
 }
 
 fn step(uut: &mut ChannelRegisters) {
@@ -203,13 +213,36 @@ fn turn_in_spoilt(uut: &mut ChannelRegisters, words: [u32; 3], spoilt: [u32; 3])
     step(uut);
 }
 
+/// Catches settings that change under a frame, or in the cycle in which its trigger is looked at.
+#[test]
+fn settings_stay_while_the_channel_is_busy_and_in_the_cycle_of_a_trigger() {
+    let words = config_words(&test_config(), Some(0));
+    let mut other = words;
+    other[0] ^= 1 << 8;
+    let all = |uut: &ChannelRegisters| {
+        ["command", "period_cycles", "position_bits"].map(|field| output(uut, field))
+    };
+    let mut uut = new();
+    let before = all(&uut);
+    uut.busy.next = true;
+    turn_in(&mut uut, other);
+    assert_eq!(all(&uut), before, "busy");
+    uut.busy.next = false;
+    uut.trigger.next = true;
+    step(&mut uut);
+    assert_eq!(all(&uut), before, "in the cycle of a trigger");
+    uut.trigger.next = false;
+    step(&mut uut);
+    assert_ne!(all(&uut), before, "at rest");
+}
+
 #[test]
 fn nothing_goes_out_with_settings_that_nobody_wrote() {
     let words = config_words(&test_config(), Some(0));
     let start = new();
     let right = ["command", "request_id", "period_cycles"].map(|f| output(&start, f));
     for bit in 0..96 {
-        let mut uut = new();
+        let mut uut = guarded_registers();
         let mut spoilt = [0; 3];
         spoilt[bit / 32] = 1 << (bit % 32);
         turn_in_spoilt(&mut uut, words, spoilt);

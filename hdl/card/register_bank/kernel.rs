@@ -96,8 +96,11 @@ impl Logic for RegisterBank {
         self.written.next = self.front.write_data.val().get_bits::<8>(24);
         self.head.next = self.ring.byte_out.val();
         if self.passes.q.val() & self.write_now.q.val() {
-            self.head.next = bit_cast::<9, 8>(self.written.val())
-                | (bit_cast::<9, 1>(self.written.val().xor().into()) << 8);
+            self.head.next = bit_cast::<9, 8>(self.written.val());
+            if self.has_guards.val() {
+                self.head.next = bit_cast::<9, 8>(self.written.val())
+                    | (bit_cast::<9, 1>(self.written.val().xor().into()) << 8);
+            }
         }
         if self.byte_passes.q.val() {
             self.ring_byte.d.next = self.ring.byte_out.val().get_bits::<8>(0);

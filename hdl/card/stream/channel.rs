@@ -88,6 +88,7 @@ pub struct SetChannel {
     upset_now: Reg<Bit>,
     parity: Signal<Local, Bit>,
     shown: Signal<Local, Bits<8>>,
+    has_guards: Constant<Bit>,
     has_crc: Constant<Bit>,
     taken_bit: Constant<Bits<8>>,
     upset_cause: Constant<Bits<8>>,
@@ -99,7 +100,13 @@ pub struct SetChannel {
 
 impl SetChannel {
     /// The place of channel `channel`, which speaks this protocol, for late results too if `takes_late`, and for what else sets have.
-    pub fn new(channel: usize, protocol: Protocol, takes_late: bool, parts: SetParts) -> Self {
+    pub fn new(
+        channel: usize,
+        protocol: Protocol,
+        takes_late: bool,
+        parts: SetParts,
+        guards: bool,
+    ) -> Self {
         let (runs, infos) = (usize::from(parts.runs), usize::from(parts.additional_data));
         Self::from_parts(SetChannelParts {
             take_run: each(runs),
@@ -113,6 +120,7 @@ impl SetChannel {
             info_byte: each(infos),
             number: Constant::new((channel as u64 + 1).into()),
             takes_late: Constant::new(takes_late),
+            has_guards: Constant::new(guards),
             has_crc: Constant::new(protocol == Protocol::Endat),
             taken_bit: Constant::new((1u64 << 5).into()),
             upset_cause: Constant::new(protocol.code_of("upset").into()),
@@ -182,7 +190,8 @@ impl Logic for SetChannel {
 
         // Told with the status byte; the bytes before it have gone out.
         self.upset_now.reset.next = self.block.val() != self.number.val();
-        self.upset_now.d.next = (self.position_taken.q.val().xor() ^ self.parity_taken.q.val())
+        self.upset_now.d.next = self.has_guards.val()
+            & (self.position_taken.q.val().xor() ^ self.parity_taken.q.val())
             & (self.byte_at.val() == 6);
         // A reset by deselection alone takes no logic.
         self.byte_now.reset.next = self.block.val() != self.number.val();

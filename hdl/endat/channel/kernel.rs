@@ -8,7 +8,7 @@ impl Logic for Channel {
     fn update(&mut self) {
         connect!(
             self.filter, self.clock_gen, self.sender, self.delay, self.receiver, self.transaction,
-            self.snapshot, self.add_info, self.settings <= self; clock, reset
+            self.snapshot, self.add_info <= self; clock, reset
         );
         self.take_settings();
         self.choose_command();
@@ -24,13 +24,30 @@ impl Logic for Channel {
 
     /// Settings of the frame, and the clock period that it runs with.
     fn take_settings(&mut self) {
-        self.settings.is_at_rest.next = self.transaction.is_at_rest.val();
-        self.settings.start.next = self.transaction.control.start.val();
-        PortSettingsIn::link(&mut self.settings_in, &mut self.settings.wanted);
-        self.settings.frame_command.next = self.command_now.val();
-        connect!(self.settings <= self.orders; recovery_min_cycles, watchdog_us);
-
-        self.period.next = self.settings.period_cycles_now.val();
+        connect!(self <= self.settings_in;
+            command_set = command, width_set = position_bits, filter_set = filter_cycles,
+            filter_half_set = filter_half, window_set = start_window_cycles, period = period_cycles
+        );
+        connect!(self.transaction.limits <= self.settings_in;
+            first_low_extra_cycles, start_timeout_us, recovery_limit_cycles
+        );
+        connect!(self.transaction.limits <= self.orders; recovery_min_cycles, watchdog_us);
+        self.transaction.settings_upset.next = false;
+        for i in 0..self._guards {
+            connect!(self.settings[i] <= self; clock, reset);
+            self.settings[i].is_at_rest.next = self.transaction.is_at_rest.val();
+            self.settings[i].start.next = self.transaction.control.start.val();
+            PortSettingsIn::link(&mut self.settings_in, &mut self.settings[i].wanted);
+            self.settings[i].frame_command.next = self.command_now.val();
+            connect!(self.settings[i] <= self.orders; recovery_min_cycles, watchdog_us);
+            connect!(self <= self.settings[i];
+                command_set = command_now, width_set = position_bits_now,
+                filter_set = filter_cycles_now, filter_half_set = filter_half_now,
+                window_set = start_window_cycles_now, period = period_cycles_now
+            );
+            FrameLimitsOut::join(&mut self.settings[i].limits, &mut self.transaction.limits);
+            self.transaction.settings_upset.next = self.settings[i].is_upset.val();
+        }
         if self.transaction.cell_control.slow.val() {
             self.period.next = self.calibration_period_cycles.val();
         }
@@ -38,7 +55,7 @@ impl Logic for Channel {
 
     /// Which command the next frame has is settled before it begins, and stays until all has been told of it.
     fn choose_command(&mut self) {
-        connect!(self <= self.settings; command_now, payload_bits = position_bits_now);
+        connect!(self <= self; command_now = command_set, payload_bits = width_set);
         if self.has_requests.val() {
             self.command_now.next = self.frame_command.q.val();
             if self.shape.answer.has_parameter.val() {
@@ -83,9 +100,7 @@ impl Logic for Channel {
     /// Line, clock, what is sent, and the places of the answer's cells.
     fn run_clock(&mut self) {
         self.filter.pin.next = self.line.data_i.val();
-        connect!(self.filter <= self.settings;
-            filter_cycles = filter_cycles_now, filter_half = filter_half_now
-        );
+        connect!(self.filter <= self; filter_cycles = filter_set, filter_half = filter_half_set);
         self.filter.majority.next = self.majority.val();
         self.filter.both_edges.next = self.receiver.progress.started.val();
 
@@ -113,7 +128,7 @@ impl Logic for Channel {
         connect!(self.delay <= self.receiver.progress;
             hunting, follow = start_found, none_under_way
         );
-        self.delay.start_window_cycles.next = self.settings.start_window_cycles_now.val();
+        self.delay.start_window_cycles.next = self.window_set.val();
     }
 
     /// The answer, cell by cell.
@@ -126,6 +141,8 @@ impl Logic for Channel {
             self.receiver.level.next = self.filter.level_first.val();
         }
         connect!(self.receiver <= self; payload_bits, command = command_now);
+        connect!(self.receiver <= self.snapshot; put = swap);
+        connect!(self.receiver <= self.snapshot.result; put_word = position, put_crc = position_crc);
         AnswerShapeOut::join(&mut self.shape.answer, &mut self.receiver.shape);
         connect!(self.receiver <= self.add_info; infos, look);
     }
@@ -172,12 +189,10 @@ impl Logic for Channel {
                 self.receiver.verdict.f1.val() ^ self.forced_now.val().get_bit(0);
             self.transaction.check.f2.next =
                 self.receiver.verdict.f2.val() ^ self.forced_now.val().get_bit(1);
-            self.transaction.check.serial_ok.next =
-                self.receiver.verdict.serial_ok.val() & !self.forced_now.val().get_bit(2);
+            self.transaction.check.crc_ok.next =
+                self.receiver.verdict.crc_ok.val() & !self.forced_now.val().get_bit(2);
         }
         self.transaction.will_rise.next = self.clock_gen.will_rise.val();
-        FrameLimitsOut::join(&mut self.settings.limits, &mut self.transaction.limits);
-        self.transaction.settings_upset.next = self.settings.is_upset.val();
     }
 
     /// The last good position.
@@ -204,7 +219,7 @@ impl Logic for Channel {
                 .replace_bit(23 - i, self.receiver.payload.val().get_bit(i));
         }
         self.crc_ok.next =
-            self.receiver.verdict.serial_ok.val() & self.receiver.verdict.parallel_ok.val();
+            self.receiver.verdict.crc_ok.val() & self.receiver.verdict.stored_ok.val();
         self.info_taken.d.next = self.receiver.progress.info_done.val();
         self.reply_taken.d.next = self.receiver.progress.done.val() & self.frame_own.q.val();
         if self.reply_taken.q.val() {

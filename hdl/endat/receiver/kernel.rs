@@ -6,9 +6,8 @@ use rtl_design::kernel;
 #[kernel]
 impl Logic for Receiver {
     fn update(&mut self) {
-        clock!(self, clock, serial, check);
+        clock!(self, clock, check);
         self.check.reset.next = self.reset.val();
-        self.serial.reset.next = self.reset.val();
         self.choose_width();
         self.begin_cycle();
         self.count_cells();
@@ -95,10 +94,10 @@ impl Logic for Receiver {
             self.to_send.d.next = self.to_send.q.val() - 1;
         }
         // A third count, modulo 8, of the pulses that are on the cable.
-        if self.cells.pulse.val() & !self.counts.val() {
+        if self.has_guards.val() & self.cells.pulse.val() & !self.counts.val() {
             self.under_way.d.next = self.under_way.q.val() + 1;
         }
-        if self.counts.val() & !self.cells.pulse.val() {
+        if self.has_guards.val() & self.counts.val() & !self.cells.pulse.val() {
             self.under_way.d.next = self.under_way.q.val() - 1;
         }
     }
@@ -249,6 +248,10 @@ impl Logic for Receiver {
         if self.shift.val() {
             self.word.d.next = self.shifted.val();
         }
+        // What has been published is not needed here any more.
+        if self.swaps.val() & self.put.val() {
+            self.word.d.next = bit_cast::<50, 48>(self.put_word.val());
+        }
         if self.shift.val() | ((self.field.q.val() == Field::Skip) & self.skip_step.val()) {
             self.covered.d.next = self.covered_next.val();
         }
@@ -264,10 +267,10 @@ impl Logic for Receiver {
         if self.has_all.val() & (!self.shape.has_f1.val() | self.in_info.q.val()) {
             self.aligned_at.next = 4.into();
         }
-        if self.last_payload.q.val() {
-            self.crc_calc.d.next = self.serial.crc.val();
-        }
+        self.crc.word.next = self.word.q.val();
+        self.crc.covered.next = self.covered.q.val();
         if self.take_crc.q.val() {
+            self.crc_calc.d.next = self.crc.crc.val();
             self.align.d.next = true;
         }
         if self.align.q.val()
@@ -278,10 +281,13 @@ impl Logic for Receiver {
         }
     }
 
-    /// Both checks of the CRC.
+    /// The CRC as received, and the guard's look at the stored word.
     fn check_crc(&mut self) {
         if self.crc_bit.val() {
             self.crc_bits.d.next = (self.crc_bits.q.val() << 1).replace_bit(0, self.level.val());
+        }
+        if self.swaps.val() & self.put.val() {
+            self.crc_bits.d.next = self.put_crc.val();
         }
         self.check.clear.next = self.control.start.val()
             | (self.new_block.q.val() & self.has_all.val())
@@ -294,11 +300,6 @@ impl Logic for Receiver {
             !self.has_all.val() | (self.shape.has_f1.val() & !self.in_info.q.val());
         self.check.f1.next = self.f1_bit.q.val();
         self.check.f2.next = self.f2_bit.q.val();
-        self.serial.clear.next = self.control.start.val()
-            | (self.separator.val() & self.has_all.val())
-            | (self.again.val() & self.has_continuous.val());
-        self.serial.enable.next = self.covered_bit.val() | self.crc_bit.val();
-        self.serial.bit.next = self.level.val();
     }
 
     /// The end of an answer or a block.
@@ -308,8 +309,9 @@ impl Logic for Receiver {
         self.is_taken.next = self.last_taken.q.val() | self.waiting.q.val();
         self.waiting.d.next = self.is_taken.val() & self.not_aligned.val();
         self.done_now.d.next = self.is_taken.val() & !self.not_aligned.val();
-        self.parallel_equal.d.next = self.check.is_ok.val();
-        self.serial_good.d.next = self.serial.residue_ok.val();
+        self.crc_fits.next = self.crc_bits.q.val() == self.crc_calc.q.val();
+        self.crc_equal.d.next = self.crc_fits.val();
+        self.stored_fits.d.next = self.check.is_ok.val() & self.has_guards.val();
     }
 
     /// A new block: no bits yet. The position stays until it is published; the block's first bit comes a cycle after that.
@@ -424,8 +426,9 @@ impl Logic for Receiver {
         self.progress.one_to_send.next = self.to_send.q.val() == 1;
         self.progress.none_under_way.next = self.to_send.q.val() == self.left.q.val();
         // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
-        self.used.d.next =
-            self.progress.all_sent.val() & (self.left.q.val() == 1) & (self.under_way.q.val() == 1);
+        self.used.d.next = self.progress.all_sent.val()
+            & (self.left.q.val() == 1)
+            & ((self.under_way.q.val() == 1) | !self.has_guards.val());
         self.progress.all_used.next = self.used.q.val();
         self.ended.d.next = self.progress.all_sent.val()
             & self.progress.none_under_way.val()
@@ -448,7 +451,9 @@ impl Logic for Receiver {
         self.progress.gap_good.next = self.good_gap.q.val() & self.has_continuous.val();
         self.progress.gap_low.next = self.low_gap.q.val() & self.has_continuous.val();
         self.progress.gap_high.next = self.high_gap.q.val() & self.has_continuous.val();
-        self.progress.latched.next = self.again.val() & self.has_continuous.val();
+        // Of an encoder that is still at the answer before nothing has been taken.
+        self.progress.latched.next =
+            self.again.val() & !self.level.val() & self.has_continuous.val();
     }
 
     /// What it has brought.
@@ -459,7 +464,10 @@ impl Logic for Receiver {
         self.verdict.f2.next = self.f2_bit.q.val();
         self.crc_received.next = self.crc_bits.q.val();
         self.crc_computed.next = self.crc_calc.q.val();
-        self.verdict.serial_ok.next = self.serial_good.q.val();
-        self.verdict.parallel_ok.next = self.parallel_equal.q.val();
+        self.verdict.crc_ok.next = self.crc_equal.q.val();
+        self.verdict.stored_ok.next = self.crc_equal.q.val();
+        if self.has_guards.val() {
+            self.verdict.stored_ok.next = self.stored_fits.q.val();
+        }
     }
 }

@@ -84,8 +84,8 @@ impl Logic for Transaction {
     fn go_on(&mut self) {
         self.running.next = false;
         // A frame that has vanished: a register was upset.
-        self.vanished.next =
-            (self.owing.q.val() & !self.once_more.q.val()) | self.under_way.q.val();
+        self.vanished.next = self.has_guards.val()
+            & ((self.owing.q.val() & !self.once_more.q.val()) | self.under_way.q.val());
 
         match self.phase.q.val() {
             Phase::NotReady => self.await_low(),
@@ -200,7 +200,9 @@ impl Logic for Transaction {
         self.verdict.is_measuring.next = self.measuring.q.val();
         self.verdict.settings_upset.next = self.settings_upset.val() | self.delay_upset.val();
         self.verdict.give_up.next = self.give_up.val();
-        self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
+        // Of a frame that measured nothing has been published.
+        self.verdict.is_late.next =
+            (self.answered.q.val() & !self.verdict.once_more.val()) | self.found_late.val();
         connect!(self.verdict <= self; refuse, announce, normal_end, is_going = going, is_own = own);
         AnswerCheckIn::link(&mut self.check, &mut self.verdict.check);
         self.verdict.recovery_cycles.next = self.recovery.q.val();

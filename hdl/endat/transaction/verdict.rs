@@ -180,7 +180,7 @@ impl Logic for Verdict {
 
         // Of what has been told: the choice is kept out of the path of what is found.
         self.chooser.flags.next = self.flags_now.q.val();
-        self.crc_bad.next = !(self.check.serial_ok.val() & self.check.parallel_ok.val());
+        self.crc_bad.next = !(self.check.crc_ok.val() & self.check.stored_ok.val());
         self.bad_now.next = self.crc_bad.val() | self.check.f1.val() | !self.check.f2.val();
         self.is_bad.next = self.bad_now.val();
         self.is_pending.next = self.pending.q.val() | self.taken_now.q.val();
@@ -200,7 +200,7 @@ impl Logic for Verdict {
             if !self.check.f2.val() {
                 self.found_all.next = self.found_all.val() | self.f2_clear.val();
             }
-            if !self.check.parallel_ok.val() {
+            if !self.check.stored_ok.val() {
                 self.found_all.next = self.found_all.val() | self.parallel_wrong.val();
             }
         }

@@ -22,7 +22,7 @@ use crate::endat::features::Features;
 use crate::input_filter::InputFilter;
 use crate::lowest_cause::LowestCause;
 use crate::ports::FrameResultOut;
-use crate::snapshot::Snapshot;
+use crate::snapshot::{Snapshot, Withdrawal};
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -130,6 +130,7 @@ pub struct SsiPort {
     loses: Signal<Local, Bit>,
     found: Signal<Local, Bits<6>>,
     raised: Signal<Local, Bits<16>>,
+    has_guards: Constant<Bit>,
     // Nothing can be said of DATA after the last bit: no check there, and the recovery time lasts as long as it may.
     holds_end: Constant<Bit>,
     at_rest: Constant<Bits<4>>,
@@ -150,18 +151,24 @@ const STATE_RECOVERY: u64 = 9;
 const STATE_JUDGE: u64 = 10;
 
 impl SsiPort {
-    /// For what is asked, as far as no setting says it: special bits, and how a frame ends.
-    pub fn new(asked: &SsiSpec) -> Self {
+    /// For what is asked, as far as no setting says it: special bits, and how a frame ends; `guards` look for upsets of stored bits.
+    pub fn new(asked: &SsiSpec, guards: bool) -> Self {
         let special: Vec<SpecialBits> = match asked.has_specials() {
-            true => vec![SpecialBits::new(&asked.before, &asked.after)],
+            true => vec![SpecialBits::new(&asked.before, &asked.after, guards)],
             false => vec![],
         };
         Self::from_parts(SsiPortParts {
             _specials: special.len(),
             special,
+            has_guards: Constant::new(guards),
             holds_end: Constant::new(asked.holds_end),
             filter: InputFilter::new(Features::NONE),
-            snapshot: Snapshot::without_earlier(cause::UPSET, cause::flag(cause::UPSET)),
+            snapshot: Snapshot::new(
+                Withdrawal::Clears,
+                guards,
+                cause::UPSET,
+                cause::flag(cause::UPSET),
+            ),
             at_rest: Constant::new(STATE_REST.into()),
             at_low: Constant::new(STATE_LOW.into()),
             at_high: Constant::new(STATE_HIGH.into()),
@@ -174,7 +181,7 @@ impl SsiPort {
 
 impl Default for SsiPort {
     fn default() -> Self {
-        Self::new(&SsiSpec::default())
+        Self::new(&SsiSpec::default(), false)
     }
 }
 
@@ -228,8 +235,9 @@ impl Logic for SsiPort {
             & (self.second.q.val() | !self.frame.val().get_bit(1));
         // No upset keeps the clock LOW.
         self.clk.d.next = self.state.q.val() != self.at_low.val();
-        self.is_astray.next = self.state.q.val().xor()
-            | (self.clk.q.val() == (self.state.q.val() == self.at_low.val()));
+        self.is_astray.next = self.has_guards.val()
+            & (self.state.q.val().xor()
+                | (self.clk.q.val() == (self.state.q.val() == self.at_low.val())));
         if self.state.q.val() == self.at_rest.val() {
             if self.trigger.val() {
                 self.unknown.d.next = !self.frame.val().get_bit(2);
@@ -417,10 +425,11 @@ impl Logic for SsiPort {
         self.is_other.next =
             self.frame.val().get_bit(1) & (self.word.q.val() != self.again.q.val());
         // The bits are counted twice: a copy that is short by one fits the next one that begins a bit too soon.
-        self.is_torn.next = self.torn.q.val()
-            | self.is_astray.val()
-            | (self.left.q.val() != self.left_too.q.val())
-            | (self.first.q.val() != self.first_too.q.val());
+        self.is_torn.next = self.has_guards.val()
+            & (self.torn.q.val()
+                | self.is_astray.val()
+                | (self.left.q.val() != self.left_too.q.val())
+                | (self.first.q.val() != self.first_too.q.val()));
         self.torn.d.next = self.is_torn.val()
             & (self.is_astray.val() | (self.state.q.val() != self.at_rest.val()));
         // All bits have come, in as many copies as were asked for.
@@ -429,8 +438,10 @@ impl Logic for SsiPort {
             & !self.unknown.q.val()
             & !self.not_high.q.val();
         // What is stored is what came.
-        self.is_upset.next =
-            self.is_torn.val() | self.is_short.val() | (self.word.q.val().xor() ^ self.sum.q.val());
+        self.is_upset.next = self.has_guards.val()
+            & (self.is_torn.val()
+                | self.is_short.val()
+                | (self.word.q.val().xor() ^ self.sum.q.val()));
         self.found.next = bit_cast::<6, 1>(self.unknown.q.val().into())
             | (bit_cast::<6, 1>(self.not_high.q.val().into()) << 1)
             | (bit_cast::<6, 1>(self.not_low.q.val().into()) << 2)

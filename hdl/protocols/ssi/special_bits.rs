@@ -66,6 +66,7 @@ pub struct SpecialBits {
     crc_next: Signal<Local, Bits<6>>,
     bad: Signal<Local, Bits<3>>,
     is_upset: Signal<Local, Bit>,
+    has_guards: Constant<Bit>,
     has_before: Constant<Bit>,
     has_after: Constant<Bit>,
     has_tail: Constant<Bit>,
@@ -93,7 +94,7 @@ pub struct SpecialBits {
 
 impl SpecialBits {
     /// For these before and after the position.
-    pub fn new(before: &Specials, after: &Specials) -> Self {
+    pub fn new(before: &Specials, after: &Specials, guards: bool) -> Self {
         let places = Places::new(before, after);
         let number = |number: usize| Constant::new((number as u64).into());
         let mask = |mask: u64| Constant::new(mask.into());
@@ -103,6 +104,7 @@ impl SpecialBits {
         let [not_valid, not_valid_low] = places.masks(cause::NOT_VALID);
         let (parity_place, parity_is_odd) = places.parity.unwrap_or_default();
         Self::from_parts(SpecialBitsParts {
+            has_guards: Constant::new(guards),
             has_before: Constant::new(places.before > 0),
             has_after: Constant::new(places.after > 0),
             has_tail: Constant::new(places.tail > 0),
@@ -155,7 +157,7 @@ impl Logic for SpecialBits {
                 & self.stored_mask.val();
             self.sum.d.next = self.sum.q.val() ^ self.level.val() ^ self.falls_out.val();
         }
-        self.is_upset.next = self.status.q.val().xor() ^ self.sum.q.val();
+        self.is_upset.next = self.has_guards.val() & (self.status.q.val().xor() ^ self.sum.q.val());
         self.bad.next = self.bad_before.q.val()
             | bit_cast::<3, 1>(
                 ((self.status.q.val() ^ self.alarm_low.val()) & self.alarm_mask.val())

@@ -52,17 +52,18 @@ pub struct TFormatChannel {
     #[bundle]
     pub reading: ReadingOut,
     filter: InputFilter,
-    #[start]
     exchange: Exchange,
     #[start]
     reply: Reply,
-    #[start]
     outcome: Outcome,
 }
 
-impl Default for TFormatChannel {
-    fn default() -> Self {
+impl TFormatChannel {
+    /// A channel; `guards` look for upsets of stored bits.
+    pub fn new(guards: bool) -> Self {
         Self::from_parts(TFormatChannelParts {
+            exchange: Exchange::new(guards),
+            outcome: Outcome::new(guards),
             filter: InputFilter::new(Features::NONE),
         })
     }

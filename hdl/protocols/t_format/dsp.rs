@@ -111,11 +111,9 @@ pub struct AsyncDsp {
     #[start]
     strobes: BusStrobes,
     filter: InputFilter,
-    #[start]
     exchange: Exchange,
     #[start]
     reply: ReplyBytes,
-    #[start]
     moments: Moments,
     select_0: SyncReg<Bit>,
     select_1: SyncReg<Bit>,
@@ -138,7 +136,10 @@ pub struct AsyncDsp {
     #[start(true)]
     memory_sum: Reg<Bit>,
     armed: Reg<Bit>,
+    // A byte has been given that no request has written yet.
+    memory_is_new: Reg<Bit>,
     memory_fits: Signal<Local, Bit>,
+    has_guards: Constant<Bit>,
     us_last: Signal<Local, Bit>,
     chosen_cycles: Signal<Local, Bits<5>>,
     can_write: Signal<Local, Bit>,
@@ -147,12 +148,15 @@ pub struct AsyncDsp {
 }
 
 impl AsyncDsp {
-    /// A receiver that starts with these settings.
-    pub fn new(start: &TFormatStart) -> Self {
+    /// A receiver that starts with these settings; `guards` look for upsets of stored bits.
+    pub fn new(start: &TFormatStart, guards: bool) -> Self {
         let cycles = |bit_hz: u64| SYSTEM_HZ.map(|hz| hz / bit_hz);
         let bits = [cycles(BIT_HZ), cycles(FAST_BIT_HZ)].concat();
         Self::from_parts(AsyncDspParts {
             filter: InputFilter::new(Features::NONE),
+            exchange: Exchange::new(guards),
+            moments: Moments::new(guards),
+            has_guards: Constant::new(guards),
             request_id: Reg::new(u64::from(start.request_id).into()),
             settings: Reg::new(start.word().into()),
             us_cycles: (SYSTEM_HZ.iter())
@@ -208,10 +212,14 @@ impl Logic for AsyncDsp {
             self.start.d.next = true;
         }
         // A byte is written once for each write of address 7 and one of address 0 behind it: no pin, no upset does it again.
-        self.memory_fits.next = self.memory.q.val().xor() == self.memory_sum.q.val();
+        self.memory_fits.next = self.memory_is_new.q.val();
+        if self.has_guards.val() {
+            self.memory_fits.next = self.memory.q.val().xor() == self.memory_sum.q.val();
+        }
         self.armed.d.next = self.armed.q.val() & (self.start.q.val() | self.exchange.busy.val());
         if self.moments.published.val() & self.armed.q.val() & (self.request_id.q.val() == 6) {
             self.memory_sum.d.next = !self.memory.q.val().xor();
+            self.memory_is_new.d.next = false;
         }
         if self.strobes.written.val() & self.can_write.val() {
             match self.strobes.written_register.val().index() {
@@ -226,6 +234,7 @@ impl Logic for AsyncDsp {
                     self.memory.d.next = self.strobes.written_data.val();
                     // Formed before the data stood anywhere.
                     self.memory_sum.d.next = self.strobes.written_sum.val();
+                    self.memory_is_new.d.next = true;
                 }
                 _ => {}
             }

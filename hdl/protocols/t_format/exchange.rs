@@ -136,6 +136,7 @@ pub struct Exchange {
     memory_busy: Reg<Bit>,
     overrun: Reg<Bit>,
     upset: Reg<Bit>,
+    has_guards: Constant<Bit>,
     in_request: Signal<Local, Bit>,
     turns: Signal<Local, Bit>,
     half_bit: Signal<Local, Bits<7>>,
@@ -166,4 +167,13 @@ pub struct Exchange {
     raised: Signal<Local, Bits<16>>,
     is_whole: Signal<Local, Bit>,
     is_good: Signal<Local, Bit>,
+}
+
+impl Exchange {
+    /// An exchange; `guards` look for upsets of its registers.
+    pub fn new(guards: bool) -> Self {
+        Self::from_parts(ExchangeParts {
+            has_guards: Constant::new(guards),
+        })
+    }
 }

@@ -82,7 +82,7 @@ pub struct Moments {
     known: Memory<8, 6>,
     #[start(3.into())]
     step: Reg<Bits<4>>,
-    // After a reset a bank is filled with zeros; twice, so that no upset does it.
+    // After a reset a bank is filled with zeros; with guards in two registers, so that no upset does it.
     #[start(true)]
     clearing: Reg<Bit>,
     cleared: Reg<Bit>,
@@ -127,6 +127,16 @@ pub struct Moments {
     is_told: Signal<Local, Bit>,
     high_byte: Signal<Local, Bits<8>>,
     low_byte: Signal<Local, Bits<8>>,
+    has_guards: Constant<Bit>,
+}
+
+impl Moments {
+    /// Moments; `guards` look for upsets of what is stored.
+    pub fn new(guards: bool) -> Self {
+        Self::from_parts(MomentsParts {
+            has_guards: Constant::new(guards),
+        })
+    }
 }
 
 #[kernel]
@@ -134,7 +144,7 @@ impl Logic for Moments {
     fn update(&mut self) {
         clock!(self, clock, low, high, known);
 
-        self.clears.next = self.clearing.q.val() & !self.cleared.q.val();
+        self.clears.next = self.clearing.q.val() & !(self.has_guards.val() & self.cleared.q.val());
         // Step by step, from 3 round to 2: the control data, which come last, are low in word 1.
         self.copies.next = self.verdict.val() | self.clears.val();
         self.is_last.next = self.step.q.val() == 2;
@@ -265,7 +275,7 @@ impl Logic for Moments {
         if self.scan.q.val().any() & !self.scan.q.val().get_bit(2) {
             self.scan.d.next = self.scan.q.val() + 1;
         }
-        if self.takes.val() {
+        if self.has_guards.val() & self.takes.val() {
             self.scan.d.next = 1.into();
         }
         self.scanned.d.next = self.scan.q.val();
@@ -277,7 +287,8 @@ impl Logic for Moments {
         if self.takes.val() {
             self.differs.d.next = self.single_sum.q.val() ^ self.multi_sum.q.val();
         }
-        self.fits.next = !self.differs.q.val() & (self.held.q.val().xor() == self.held_sum.q.val());
+        self.fits.next = !self.has_guards.val()
+            | (!self.differs.q.val() & (self.held.q.val().xor() == self.held_sum.q.val()));
         self.place.next = self.register.val();
         if self.scan.q.val().any() {
             self.place.next = self.scan.q.val();

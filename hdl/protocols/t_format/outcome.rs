@@ -52,6 +52,16 @@ pub struct Outcome {
     multi_sum: Reg<Bit>,
     take: Signal<Local, Bit>,
     alarm_flags: Signal<Local, Bits<2>>,
+    has_guards: Constant<Bit>,
+}
+
+impl Outcome {
+    /// An outcome; with `guards` the parities of the positions go with them, otherwise they are 0.
+    pub fn new(guards: bool) -> Self {
+        Self::from_parts(OutcomeParts {
+            has_guards: Constant::new(guards),
+        })
+    }
 }
 
 #[kernel]
@@ -94,10 +104,10 @@ impl Logic for Outcome {
         self.reading.sequence.next = self.count.q.val();
         self.reading.single_turn.next = self.single.q.val();
         self.reading.single_valid.next = self.has_had_single.q.val();
-        self.reading.single_parity.next = self.single_sum.q.val();
+        self.reading.single_parity.next = self.single_sum.q.val() & self.has_guards.val();
         self.reading.multi_turn.next = self.multi.q.val();
         self.reading.multi_valid.next = self.has_had_multi.q.val();
-        self.reading.multi_parity.next = self.multi_sum.q.val();
+        self.reading.multi_parity.next = self.multi_sum.q.val() & self.has_guards.val();
         self.reading.encoder_id.next = self.identity.q.val();
         self.reading.memory_data.next = self.memory.q.val();
         self.reading.alarm.next = self.alarms.q.val();

@@ -18,7 +18,7 @@ use crate::endat::features::Features;
 use crate::input_filter::InputFilter;
 use crate::lowest_cause::LowestCause;
 use crate::ports::FrameResultOut;
-use crate::snapshot::Snapshot;
+use crate::snapshot::{Snapshot, Withdrawal};
 use endat_macros::kernel;
 use rtl_design::reg::Reg;
 use rtl_design::Block;
@@ -80,7 +80,6 @@ pub struct TFormatPort {
     /// What to write.
     pub host_data: Signal<In, Bits<16>>,
     filter: InputFilter,
-    #[start]
     exchange: Exchange,
     #[start]
     reply: Reply,
@@ -113,6 +112,7 @@ pub struct TFormatPort {
     has_had_single: Reg<Bit>,
     has_had_multi: Reg<Bit>,
     shown: Reg<Bits<32>>,
+    has_guards: Constant<Bit>,
     is_busy: Signal<Local, Bit>,
     is_own: Signal<Local, Bit>,
     is_torn: Signal<Local, Bit>,
@@ -136,11 +136,19 @@ pub struct TFormatPort {
     chosen: Signal<Local, Bits<32>>,
 }
 
-impl Default for TFormatPort {
-    fn default() -> Self {
+impl TFormatPort {
+    /// A port; `guards` look for upsets of stored bits.
+    pub fn new(guards: bool) -> Self {
         Self::from_parts(TFormatPortParts {
+            has_guards: Constant::new(guards),
             filter: InputFilter::new(Features::NONE),
-            snapshot: Snapshot::without_withdrawal(cause::UPSET, cause::flag(cause::UPSET)),
+            exchange: Exchange::new(guards),
+            snapshot: Snapshot::new(
+                Withdrawal::Never,
+                guards,
+                cause::UPSET,
+                cause::flag(cause::UPSET),
+            ),
         })
     }
 }
@@ -168,9 +176,13 @@ impl Logic for TFormatPort {
         self.own_start.next = self.pending.q.val() & !self.is_busy.val() & !self.trigger.val();
         self.begins.next = !self.is_busy.val() & (self.trigger.val() | self.pending.q.val());
         self.own_now.next = self.own_start.val();
-        // Twice: whose exchange it is decides what goes out, and whose result it is.
-        self.is_own.next = self.own.q.val() & self.own_too.q.val();
-        self.is_torn.next = self.own.q.val() ^ self.own_too.q.val();
+        // With guards twice: whose exchange it is decides what goes out, and whose result it is.
+        self.is_own.next = self.own.q.val();
+        self.is_torn.next = false;
+        if self.has_guards.val() {
+            self.is_own.next = self.own.q.val() & self.own_too.q.val();
+            self.is_torn.next = self.own.q.val() ^ self.own_too.q.val();
+        }
         if self.is_busy.val() {
             self.own_now.next = self.is_own.val();
         }
@@ -194,7 +206,8 @@ impl Logic for TFormatPort {
         self.send_sum_now.next = self.send_id.q.val().xor()
             ^ self.send_address.q.val().xor()
             ^ self.send_data.q.val().xor();
-        self.send_fits.next = self.send_sum_now.val() == self.send_sum.q.val();
+        self.send_fits.next =
+            !self.has_guards.val() | (self.send_sum_now.val() == self.send_sum.q.val());
         // It goes out once.
         if self.exchange.publish.val() & self.is_own.val() {
             self.send_sum.d.next = !self.send_sum_now.val();
@@ -275,12 +288,14 @@ impl Logic for TFormatPort {
         }
         // What is stored is what came, and it is known for whom.
         self.reply_fits.next = !self.is_torn.val();
-        if self.exchange.parts.has_single.val()
+        if self.has_guards.val()
+            & self.exchange.parts.has_single.val()
             & (self.reply.fields.single_turn.val().xor() != self.reply.fields.single_parity.val())
         {
             self.reply_fits.next = false;
         }
-        if self.exchange.parts.has_multi.val()
+        if self.has_guards.val()
+            & self.exchange.parts.has_multi.val()
             & (self.reply.fields.multi_turn.val().xor() != self.reply.fields.multi_parity.val())
         {
             self.reply_fits.next = false;

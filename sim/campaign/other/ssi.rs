@@ -104,7 +104,7 @@ impl<const SPECIAL: bool> Device for Ssi<SPECIAL> {
     }
 
     fn design() -> Result<Design, CampaignError> {
-        let mut block = SsiPort::new(&Self::asked());
+        let mut block = SsiPort::new(&Self::asked(), true);
         block.connect_all();
         Ok(elaborate(&block, SUBJECT)?)
     }

@@ -69,7 +69,7 @@ impl Device for TFormat {
     }
 
     fn design() -> Result<Design, CampaignError> {
-        let mut block = TFormatPort::default();
+        let mut block = TFormatPort::new(true);
         block.connect_all();
         Ok(elaborate(&block, SUBJECT)?)
     }

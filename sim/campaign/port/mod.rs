@@ -112,6 +112,8 @@ pub enum Port {
     DoubleEdge,
     /// All parts, and a second receiver.
     SecondReceiver,
+    /// Triggered positions only, without guards against upsets.
+    Unguarded,
 }
 
 /// The frame in which it is done.
@@ -167,9 +169,10 @@ impl Port {
     /// Those of the committed campaigns.
     pub const ALL: [Self; 3] = [Self::Position, Self::AllParts, Self::DoubleEdge];
 
-    /// Those that may be asked for by name: these, and one with a second receiver.
+    /// Those that may be asked for by name: these, one with a second receiver, and one without guards.
     pub fn named() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().chain([Self::SecondReceiver])
+        let others = [Self::SecondReceiver, Self::Unguarded];
+        Self::ALL.into_iter().chain(others)
     }
 
     /// Its name in tables.
@@ -179,6 +182,7 @@ impl Port {
             Self::AllParts => "port_all",
             Self::DoubleEdge => "port_double_edge",
             Self::SecondReceiver => "port_second_receiver",
+            Self::Unguarded => "port_unguarded",
         }
     }
 
@@ -186,7 +190,9 @@ impl Port {
     pub fn kinds(self) -> &'static [FrameKind] {
         use FrameKind::*;
         match self {
-            Self::Position | Self::DoubleEdge => &[Calibration, Position, Position21],
+            Self::Position | Self::DoubleEdge | Self::Unguarded => {
+                &[Calibration, Position, Position21]
+            }
             Self::AllParts | Self::SecondReceiver => &[
                 Calibration,
                 Position,
@@ -201,19 +207,23 @@ impl Port {
 
     fn features(self) -> Features {
         match self {
-            Self::Position => Features::NONE,
+            Self::Position => Features::GUARDED,
             Self::AllParts => Features {
+                requests: true,
+                diagnosis: true,
+                continuous: true,
                 alignment: true,
-                ..Features::PROTOCOL
+                ..Features::GUARDED
             },
             Self::SecondReceiver => Features {
                 second_receiver: true,
                 ..Self::AllParts.features()
             },
+            Self::Unguarded => Features::CARD,
             Self::DoubleEdge => Features {
                 alignment: true,
                 double_edge: true,
-                ..Features::NONE
+                ..Features::GUARDED
             },
         }
     }

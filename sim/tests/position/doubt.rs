@@ -48,12 +48,12 @@ fn a_plug_that_is_pulled_in_an_answer_never_leaves_a_wrong_position() {
     assert!(withdrawn > 5, "{withdrawn}: the CRC let too few pass");
 }
 
-/// A frame has the settings of the cycle with its trigger; without that its width would count until the word is aligned.
+/// With guards a frame has the settings of the cycle with its trigger; without them they stay as they are while the channel is busy.
 #[test]
 fn settings_that_change_in_a_frame_count_for_the_next_one() {
     let mut rng = Rng::new(3);
     for command in [SendPosition, SendPositionAddInfo] {
-        let setup = Setup::new((32_000_000, 4_000_000), command, 25, 20.0);
+        let setup = Setup::new((32_000_000, 4_000_000), command, 25, 20.0).with(Features::GUARDED);
         let measured = setup.measured();
         let frame = {
             let mut rig = setup.on(measured.clone());
@@ -91,7 +91,7 @@ fn open_engine() -> Compiled {
         abort_us: ABORT_US,
         ..FixedTimes::at(CARD.0)
     };
-    let mut block = Channel::with(times, Features::NONE);
+    let mut block = Channel::with(times, Features::GUARDED);
     block.connect_all();
     let design = elaborate(&block, "channel").unwrap();
     Compiled::keeping(&design, Keep::Registers).unwrap()

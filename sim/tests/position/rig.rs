@@ -39,20 +39,22 @@ fn fixed_times(system_hz: u64) -> FixedTimes {
     }
 }
 
-/// A channel after power-up. The design is made once for each system clock.
-pub fn engine(system_hz: u64) -> Compiled {
-    static MADE: OnceLock<Mutex<BTreeMap<u64, Compiled>>> = OnceLock::new();
+/// A channel after power-up. The design is made once for each system clock and set of features.
+pub fn engine(system_hz: u64, features: Features) -> Compiled {
+    static MADE: OnceLock<Mutex<BTreeMap<(u64, Features), Compiled>>> = OnceLock::new();
     let mut made = MADE
         .get_or_init(Mutex::default)
         .lock()
         .unwrap_or_else(PoisonError::into_inner);
     let make = || {
-        let mut block = Channel::new(fixed_times(system_hz));
+        let mut block = Channel::with(fixed_times(system_hz), features);
         block.connect_all();
         let design = elaborate(&block, "channel").expect("the channel elaborates");
         Compiled::new(&design).expect("the channel has no loop")
     };
-    made.entry(system_hz).or_insert_with(make).clone()
+    made.entry((system_hz, features))
+        .or_insert_with(make)
+        .clone()
 }
 
 /// Everything around a channel.
@@ -60,6 +62,8 @@ pub fn engine(system_hz: u64) -> Compiled {
 pub struct Setup {
     /// System clock.
     pub system_hz: u64,
+    /// What the channel can do.
+    pub features: Features,
     /// Configuration.
     pub settings: ChannelSettings,
     /// The encoder.
@@ -74,6 +78,7 @@ impl Setup {
         let case = Case::new(rates, command, position_bits, cable_m);
         Self {
             system_hz: case.system_hz,
+            features: case.features,
             settings: case.settings,
             encoder: case.encoder,
             line: case.line,
@@ -83,6 +88,11 @@ impl Setup {
     /// The 29-bit encoder of the acquisition card on 10 m of cable.
     pub fn card() -> Self {
         Self::new(CARD, ModeCommand::SendPositionAddInfo, 29, 10.0)
+    }
+
+    /// The same with other features.
+    pub fn with(self, features: Features) -> Self {
+        Self { features, ..self }
     }
 
     /// Adds a defect to one frame (0 = first).
@@ -115,7 +125,7 @@ impl Setup {
 
     /// After power-up and reset: the first frame measures the delay.
     pub fn fresh(&self) -> Rig {
-        let engine = engine(self.system_hz);
+        let engine = engine(self.system_hz, self.features);
         let rig = Bench::channel(engine, self.system_hz, &self.settings, self.link());
         self.prepared(rig)
     }
@@ -206,7 +216,7 @@ pub fn crc_sent(frame: &FrameLog) -> u64 {
 /// Asserts that all frames so far were good and by the rules. The channel must be idle.
 pub fn assert_sound(setup: &Setup, rig: &Rig) {
     let case = Case {
-        features: Features::NONE,
+        features: setup.features,
         title: String::new(),
         system_hz: setup.system_hz,
         settings: setup.settings,

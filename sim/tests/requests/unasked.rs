@@ -70,7 +70,11 @@ fn a_trigger_sends_no_other_command_than_those_for_a_position() {
 /// One flip-flop that is inverted sends no request, the last one once more neither, and no clock goes on that was not to.
 #[test]
 fn one_upset_begins_nothing() {
-    let mut block = Channel::with(fixed_times(SYSTEM_HZ), Features::PROTOCOL);
+    let features = Features {
+        upset_guards: true,
+        ..Features::PROTOCOL
+    };
+    let mut block = Channel::with(fixed_times(SYSTEM_HZ), features);
     block.connect_all();
     let design = elaborate(&block, "channel").expect("the channel elaborates");
     let engine = Compiled::keeping(&design, Keep::Registers).expect("the channel has no loop");

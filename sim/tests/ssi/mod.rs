@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// A port as a card has it that is asked for this.
 fn block(asked: &SsiSpec) -> EncoderPort {
-    let mut block = EncoderPort::asked(&Spoken::Ssi(*asked), false);
+    let mut block = EncoderPort::asked(&Spoken::Ssi(*asked), true, false);
     block.connect_all();
     block
 }

@@ -39,7 +39,7 @@ fn engine() -> Compiled {
 
 /// A port that is made for this.
 pub fn engine_for(asked: &SsiSpec) -> Compiled {
-    let mut block = SsiPort::new(asked);
+    let mut block = SsiPort::new(asked, true);
     block.connect_all();
     let design = elaborate(&block, "port").unwrap();
     Compiled::keeping(&design, Keep::Registers).unwrap()

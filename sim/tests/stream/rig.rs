@@ -194,7 +194,7 @@ impl Rig {
             set: (0..channels)
                 .map(|n| {
                     Named::new(
-                        SetChannel::new(n, Protocol::Endat, takes_late, SetParts::default()),
+                        SetChannel::new(n, Protocol::Endat, takes_late, SetParts::default(), true),
                         "set_channel",
                     )
                 })

@@ -70,7 +70,7 @@ fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
     assert!(pushed.contains(&0x11), "the head of a set");
     assert!(recording.output("take_set").iter().sum::<u128>() > 5);
 
-    let mut block = SetChannel::new(0, Protocol::Endat, false, SetParts::default());
+    let mut block = SetChannel::new(0, Protocol::Endat, false, SetParts::default(), true);
     block.connect_all();
     let design = elaborate(&block, "set_channel").unwrap();
     let mut kernel = kernel_engine!(block; clock;

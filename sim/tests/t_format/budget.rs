@@ -121,15 +121,18 @@ struct Many {
 impl Many {
     fn new(is_card: bool) -> Self {
         let design = if is_card {
-            let mut block = TFormatPort::default();
+            let mut block = TFormatPort::new(true);
             block.connect_all();
             elaborate(&block, "port").unwrap()
         } else {
-            let mut block = AsyncDsp::new(&TFormatStart {
-                reply_gap_us: 4,
-                field_gap_us: 1,
-                ..TFormatStart::default()
-            });
+            let mut block = AsyncDsp::new(
+                &TFormatStart {
+                    reply_gap_us: 4,
+                    field_gap_us: 1,
+                    ..TFormatStart::default()
+                },
+                true,
+            );
             block.connect_all();
             elaborate(&block, "async_dsp").unwrap()
         };

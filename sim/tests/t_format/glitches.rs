@@ -52,7 +52,7 @@ fn hold(changes: &mut Vec<Time>, from: Time, to: Time, level: bool) {
 fn engine() -> Lanes {
     static MADE: OnceLock<Lanes> = OnceLock::new();
     let make = || {
-        let mut block = TFormatChannel::default();
+        let mut block = TFormatChannel::new(true);
         block.connect_all();
         let design = elaborate(&block, "t_format").unwrap();
         Lanes::new(&design, Keep::Outputs, LaneWords::Two).unwrap()

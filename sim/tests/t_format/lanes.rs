@@ -53,7 +53,7 @@ pub const LANES: usize = 128;
 
 impl Many {
     pub fn new(conditions: Conditions, seed: u64) -> Self {
-        let mut block = TFormatChannel::default();
+        let mut block = TFormatChannel::new(true);
         block.connect_all();
         let design = elaborate(&block, "t_format").unwrap();
         let mut lanes = Lanes::new(&design, Keep::Outputs, LaneWords::Two).unwrap();

@@ -60,7 +60,7 @@ impl Inputs {
 pub fn design() -> &'static Design {
     static DESIGN: OnceLock<Design> = OnceLock::new();
     DESIGN.get_or_init(|| {
-        let mut block = AsyncDsp::new(&TFormatStart::default());
+        let mut block = AsyncDsp::new(&TFormatStart::default(), true);
         block.connect_all();
         elaborate(&block, "async_dsp").unwrap()
     })

@@ -42,7 +42,7 @@ fn recorded(ids: &[u8]) -> Stimulus {
 }
 
 fn agrees(name: &str, ids: &[u8], requests_min: usize) {
-    let block = AsyncDsp::new(&TFormatStart::default());
+    let block = AsyncDsp::new(&TFormatStart::default(), true);
     let mut kernel = kernel_engine!(block; clk_i;
         in rst_i, clk_select_i, trigger_i, bus_cs_n_i, bus_rd_n_i, bus_wr_n_i, bus_address_i, bus_data_i, encoder_data_i;
         out bus_data_o, bus_data_oe, encoder_data_o, encoder_data_oe, led_o);

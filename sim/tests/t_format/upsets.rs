@@ -60,7 +60,7 @@ impl Port {
     }
 
     fn card() -> Self {
-        let mut block = TFormatPort::default();
+        let mut block = TFormatPort::new(true);
         block.connect_all();
         let design = elaborate(&block, "port").unwrap();
         let position = u128::from(MULTI_TURN) << 24 | u128::from(SINGLE_TURN);
@@ -69,7 +69,7 @@ impl Port {
     }
 
     fn receiver() -> Self {
-        let mut block = TFormatChannel::default();
+        let mut block = TFormatChannel::new(true);
         block.connect_all();
         let design = elaborate(&block, "channel").unwrap();
         let line = ["rx", "tx", "driver"];

@@ -16,7 +16,7 @@ use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 
 fn block() -> EncoderPort {
-    let mut block = EncoderPort::speaking(Protocol::TFormat, false);
+    let mut block = EncoderPort::speaking(Protocol::TFormat, true, false);
     block.connect_all();
     block
 }

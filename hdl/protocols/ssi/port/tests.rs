@@ -19,7 +19,7 @@ struct Rig {
 
 impl Rig {
     fn new(frame: u64, position_bits: u64) -> Self {
-        let mut uut = SsiPort::default();
+        let mut uut = SsiPort::new(&SsiSpec::default(), true);
         uut.data_i.next = true;
         uut.period_cycles.next = 21.into();
         uut.frame.next = frame.into();

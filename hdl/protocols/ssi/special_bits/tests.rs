@@ -31,7 +31,7 @@ fn frame(block: &mut SpecialBits, position_bits: u64, copies: &[&[u8]]) -> [u64;
 }
 
 fn block(before: &[Special], after: &[Special]) -> SpecialBits {
-    let mut block = SpecialBits::new(&list(before), &list(after));
+    let mut block = SpecialBits::new(&list(before), &list(after), true);
     block.connect_all();
     block
 }

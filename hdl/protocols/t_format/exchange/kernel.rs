@@ -119,7 +119,7 @@ impl Logic for Exchange {
             }
             if !self.is_start.val() & !self.is_bit.val() {
                 self.bits_mod_3.d.next = 0.into();
-                if self.bits_mod_3.q.val().any() & self.in_field.val() {
+                if self.has_guards.val() & self.bits_mod_3.q.val().any() & self.in_field.val() {
                     self.upset.d.next = true;
                 }
             }
@@ -162,7 +162,7 @@ impl Logic for Exchange {
         self.order.first.next = true;
         self.index.d.next = 15.into();
         self.refused.d.next = false;
-        if self.owed.q.val() {
+        if self.has_guards.val() & self.owed.q.val() {
             // Its result would never come.
             self.phase.d.next = Phase::Judge;
         } else {
@@ -288,7 +288,11 @@ impl Logic for Exchange {
         if self.turns.val() & self.run.q.val().any() & !self.too_soon.val() {
             self.bad_crc.d.next = true;
         }
-        if self.sampled.val() & self.is_bit.val() & self.order.is_foreign.val() {
+        if self.has_guards.val()
+            & self.sampled.val()
+            & self.is_bit.val()
+            & self.order.is_foreign.val()
+        {
             self.upset.d.next = true;
         }
     }
@@ -318,7 +322,8 @@ impl Logic for Exchange {
 
     /// No request lasts that long, or is another one than was asked for.
     fn guard_request(&mut self) {
-        if self.in_request.val()
+        if self.has_guards.val()
+            & self.in_request.val()
             & (self.phase.q.val() != Phase::Rest)
             & (self.expired.val() | !self.request_fits.val() | self.upset.q.val())
         {
@@ -354,7 +359,7 @@ impl Logic for Exchange {
                 & !self.index.q.val().get_bit(1)
                 & !self.index.q.val().get_bit(2)
                 & (self.echo.q.val() == self.request_id.val()));
-        self.is_astray.next = self.upset.q.val() | !self.is_ended.val();
+        self.is_astray.next = self.has_guards.val() & (self.upset.q.val() | !self.is_ended.val());
         // An alarm beside it would hide the upset.
         self.alarms.next = self.status.val().get_bits::<2>(4);
         if self.is_astray.val() {
@@ -385,7 +390,7 @@ impl Logic for Exchange {
         self.reply_id.next = self.echo.q.val();
         self.crc.next = self.check.q.val();
         self.tx.next = self.line.q.val();
-        self.driver.next = self.drives.q.val() & self.enabled.q.val();
+        self.driver.next = self.drives.q.val() & (self.enabled.q.val() | !self.has_guards.val());
         self.busy.next = self.phase.q.val() != Phase::Rest;
         connect!(self.field <= self.order; is_status, is_single, is_multi, is_alarm);
         self.field.is_byte.next = self.order.is_identity.val() | self.order.is_data.val();

@@ -19,7 +19,7 @@ struct Rig {
 
 impl Rig {
     fn new() -> Self {
-        let mut uut = TFormatPort::default();
+        let mut uut = TFormatPort::new(true);
         uut.data_i.next = true;
         uut.bit_cycles.next = 8.into();
         uut.reply_gap_us.next = 3.into();
