@@ -6,11 +6,15 @@
 //! withdraw   ____________/\________    or: it has not; what was before comes back
 //! ```
 //!
-//! With [`Withdrawal::Clears`] no position is valid after `withdraw`, until the next good one.
+//! <!-- without restores -->
+//! No position is valid after `withdraw`, until the next good one.
 //!
-//! With guards the parity of what is held is taken when it has been loaded, and compared in every cycle from then on. A register that
-//! was upset makes the position invalid, with a cause of its own.
+//! <!-- end -->
+//! <!-- with has_guards -->
+//! The parity of what is held is taken when it has been loaded, and compared in every cycle from then on. A register that was upset makes
+//! the position invalid, with a cause of its own.
 //!
+//! <!-- end -->
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 
 use crate::endat::ports::ToldIn;

@@ -43,7 +43,7 @@ fn results_go_to_stdout_and_messages_to_stderr_with_the_name_of_the_program() {
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(
         text,
-        "endat-gen: --preset = nothing: unknown preset; known presets: s6_two_channel, s6_two_channel_service, clb_2mhz, ti_three_channel, artinchip_endat_if, mixed_protocols, ssi_two_channel, demo, async_dsp\n"
+        "endat-gen: --preset = nothing: unknown preset; known presets: s6_two_channel, s6_two_channel_service, safe_two_channel, clb_2mhz, ti_three_channel, artinchip_endat_if, mixed_protocols, ssi_two_channel, demo, async_dsp\n"
     );
     let usage = program().args(["emit", "--what"]).output().unwrap();
     assert_eq!(usage.status.code(), Some(2));

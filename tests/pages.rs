@@ -64,7 +64,9 @@ fn the_sizes_are_those_of_the_area_table() {
     let mut page = Figures::of("docs/size.md");
     for (head, subject) in [
         ("| one port", "channel"),
-        ("| the same with all mode commands", "channel_requests"),
+        ("| the same that shows", "channel_restore"),
+        ("| this with guards", "channel_guards"),
+        ("| one port with all mode commands", "channel_requests"),
         ("| the same with line diagnosis", "channel_diagnosis"),
         ("| the same with continuous", "channel_continuous"),
         ("| the same with the three", "channel_all"),
@@ -77,6 +79,7 @@ fn the_sizes_are_those_of_the_area_table() {
         ("| a port with requests", "port_service"),
         ("| a port with everything", "port_all"),
         ("| two-channel card", "card"),
+        ("| the same without guards", "card_unguarded"),
         ("| the same with a stream", "card_stream"),
         ("| the card behind APB3", "card_apb"),
         ("| the same behind Wishbone", "card_wishbone"),
@@ -96,22 +99,25 @@ fn the_sizes_are_those_of_the_area_table() {
         let [ours, theirs] = [one, other].map(|subject| area(subject, XC6S.name));
         page.cells(head, &[0, 1].map(|n| format!("{}; {}", ours[n], theirs[n])));
     }
-    let peer: f64 = row(SIZE, "| public peer")[1].parse().unwrap();
-    let share = |of: f64, lut: i64| lut as f64 / of;
-    let of_device = |lut| format!("{:.1} %", share(57.20, lut));
+    let peer = [1, 2].map(|cell| row(SIZE, "| public peer")[cell].parse::<f64>().unwrap());
+    let of_peer = |[lut, ff]: [i64; 2]| {
+        let [lut, ff] = [lut as f64 / peer[0], ff as f64 / peer[1]];
+        format!("LUT {lut:.2}, FF {ff:.2} of the public position-only receiver's")
+    };
+    let of_device = |[lut, _]: [i64; 2]| format!("{:.1} %", lut as f64 / 57.20);
     for (head, subject, third) in [
         (
             "| one port",
             "channel",
-            &(|lut| format!("LUT {:.2} of the peer", share(peer, lut))) as &dyn Fn(i64) -> String,
+            &of_peer as &dyn Fn([i64; 2]) -> String,
         ),
-        ("| two-channel card", "card", &|lut| {
-            of_device(lut) + " of the LX9's 5720 LUTs"
+        ("| two-channel card", "card", &|area| {
+            of_device(area) + " of the LX9's 5720 LUTs"
         }),
         ("| card with everything", "card_service", &of_device),
     ] {
         let [lut, ff] = area(subject, XC6S.name);
-        page.cells(head, &[lut.to_string(), ff.to_string(), third(lut)]);
+        page.cells(head, &[lut.to_string(), ff.to_string(), third([lut, ff])]);
     }
     page.check();
 
@@ -128,20 +134,24 @@ fn the_sizes_are_those_of_the_area_table() {
         (
             "| one port",
             "channel",
-            &(|lut| {
-                format!(
-                    "LUT {:.2} of the public position-only receiver's",
-                    share(peer, lut)
-                )
-            }) as &dyn Fn(i64) -> String,
+            &of_peer as &dyn Fn([i64; 2]) -> String,
         ),
-        ("| two-channel card", "card_stream", &|lut| {
-            of_device(lut) + " of the LX9"
+        (
+            "| guards against upsets",
+            "channel_guards",
+            &|area: [i64; 2]| {
+                let without = crate::pages::area("channel_restore", XC6S.name);
+                let [lut, ff] = [0, 1].map(|kind| area[kind] - without[kind]);
+                format!("{lut} LUT and {ff} FF more than without them")
+            },
+        ),
+        ("| two-channel card", "card_stream", &|area| {
+            of_device(area) + " of the LX9"
         }),
         ("| card with everything", "card_service", &of_device),
     ] {
         let [lut, ff] = area(subject, XC6S.name);
-        page.cells(head, &[lut.to_string(), ff.to_string(), third(lut)]);
+        page.cells(head, &[lut.to_string(), ff.to_string(), third([lut, ff])]);
     }
     let monitors = [
         "recovery_counter",

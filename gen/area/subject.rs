@@ -89,9 +89,16 @@ fn cards(streaming: &CardConfig) -> Result<Vec<Subject>, GenError> {
     let mut card = streaming.clone();
     card.stream = Default::default();
     let full = load_preset("s6_two_channel_service")?.card;
+    let mut unguarded = full.clone();
+    unguarded.safety.upset_guards = false;
     let mixed = load_preset("mixed_protocols")?.card;
     Ok(vec![
         Subject::new("card_service", "the card with everything", Card::new(&full))?,
+        Subject::new(
+            "card_unguarded",
+            "the same without guards against upsets",
+            Card::new(&unguarded),
+        )?,
         Subject::new(
             "card",
             "two-channel card without its stream",
@@ -169,7 +176,13 @@ fn ports(times: FixedTimes, system_hz: u64) -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "channel_all",
             "position channel with all of what follows, without service",
-            Channel::with(times, Features::PROTOCOL),
+            Channel::with(
+                times,
+                Features {
+                    restore: false,
+                    ..Features::PROTOCOL
+                },
+            ),
         )?,
         Subject::new(
             "channel_requests",

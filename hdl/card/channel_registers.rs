@@ -3,7 +3,6 @@
 //! ```text
 //! channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
 //! ring block of the channel --(ring stands still, channel not busy)--> configuration of the channel
-//!                           \--(its parity is wrong)--> no command
 //! ```
 //!
 //! The held words of all channels are loaded by the same signal, so they belong together: [`crate::card::register_bank`] says when. What stands for longer

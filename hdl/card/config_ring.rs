@@ -8,9 +8,10 @@
 //!
 //! A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
 //! in place only while the ring stands still, so the blocks work from copies that are taken then.
+//! <!-- with has_guards -->
 //!
-//! With guards each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is
-//! written again.
+//! Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
+//! <!-- end -->
 
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};

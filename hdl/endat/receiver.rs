@@ -6,19 +6,23 @@
 //! align     __________________________________________/~~~~\____________________
 //! ```
 //!
+//! <!-- with has_all -->
 //! A block of additional data goes the same way behind the CRC: `Separator`, `Payload` of 24 bits, `Crc`. So does the answer to a
 //! command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
 //! cells are only counted.
 //!
+//! <!-- end -->
 //! The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
 //! with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word before
 //! that: at all four places its last bit has the same distance from a multiple of 15.
 //! `left` counts cells down to the end of the frame, `to_send` the clock pulses that they need: the difference is under way. The
 //! clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
 //! shortest answer while its start bit may still be on the cable.
+//! <!-- with has_guards -->
 //!
-//! With guards `under_way` counts the difference once more: at the end of the frame all three agree, unless one was upset. And a second
-//! parallel CRC5 looks at the word where it is stored, for as long as it stands there: what is published is what was checked.
+//! `under_way` counts the difference once more: at the end of the frame all three agree, unless one was upset. And a second parallel CRC5
+//! looks at the word where it is stored, for as long as it stands there: what is published is what was checked.
+//! <!-- end -->
 
 pub mod field;
 mod kernel;

@@ -12,9 +12,6 @@
 //
 // A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
 // in place only while the ring stands still, so the blocks work from copies that are taken then.
-//
-// With guards each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is
-// written again.
 module s6_two_channel_config_ring_2 (
     // System clock.
     input  wire         clock,

@@ -12,9 +12,6 @@
 //
 // Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
 // be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
-//
-// A set waits for the buffer, and has no CRC of the encoder: a position that an upset has changed meanwhile shows by its parity, and goes out as
-// one that is not fresh, with the cause of an upset.
 module s6_two_channel_set_channel_number_1 (
     // System clock.
     input  wire         clock,

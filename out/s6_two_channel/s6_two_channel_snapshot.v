@@ -10,11 +10,6 @@
 // confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
 // withdraw   ____________/\________    or: it has not; what was before comes back
 //
-// With Clears no position is valid after withdraw, until the next good one.
-//
-// With guards the parity of what is held is taken when it has been loaded, and compared in every cycle from then on. A register that
-// was upset makes the position invalid, with a cause of its own.
-//
 // Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 module s6_two_channel_snapshot (
     // System clock.

@@ -38,7 +38,7 @@ module s6_two_channel_tb_encoder #(
     input wire [47:0] position, // taken at the first falling edge, as everything below
     input wire f1, // 1 = alarm
     input wire f2, // the other way round: 0 = alarm, 1 = none; only with HAS_F2
-    input wire spoil_crc, // 1: the last bit of the CRC is wrong
+    input wire [4:0] spoil_crc, // bits of the CRC that are wrong, the first one sent in bit 4
     input wire no_start, // 1: no start bit, and no answer
     input wire stay_high, // 1: DATA does not fall after the frame, until this is 0 again
     input wire signed [31:0] start_ps, // the start bit comes so much later than the other bits have it, or earlier
@@ -147,7 +147,7 @@ module s6_two_channel_tb_encoder #(
                 put(f2);
             for (i = 0; i < (width > 0 ? width : POSITION_BITS); i = i + 1)
                 put(position[i]);
-            put_crc(1, {4'd0, spoil_crc});
+            put_crc(1, spoil_crc);
             crc = rest;
             info_1 = selected_1 == 8'd0 || goes_on ? 24'd0 : {3'd0, selected_1[4:0], position[15:0]};
             info_2 = selected_2 == 8'd0 || goes_on ? 24'd0 : {3'd0, selected_2[4:0], ~position[15:0]};
@@ -166,7 +166,7 @@ module s6_two_channel_tb_encoder #(
             put_byte(asked[23:16]);
             put_byte(~asked[23:16]);
             put_byte(asked[23:16]);
-            put_crc(1, {4'd0, spoil_crc});
+            put_crc(1, spoil_crc);
             crc = rest;
         end
     endtask
@@ -734,6 +734,7 @@ module s6_two_channel_tb;
     assign endat_data_i = (endat_data_oe & endat_data_o) | (~endat_data_oe & line_near);
     reg [48*CHANNELS-1:0] position;
     reg [CHANNELS-1:0] f1, f2, spoil_crc, no_start, stay_high, may_stop, goes_on;
+    reg [4:0] wrong_bits = 5'd1; // of the CRC that spoil_crc spoils
     reg [6*CHANNELS-1:0] width; // bits of a position
     reg [32*CHANNELS-1:0] start_ps; // the start bit comes so much later
     wire [5*CHANNELS-1:0] encoder_crc;
@@ -758,7 +759,7 @@ module s6_two_channel_tb;
         .position(position[48*0 +: 48]),
         .f1(f1[0]),
         .f2(f2[0]),
-        .spoil_crc(spoil_crc[0]),
+        .spoil_crc({5{spoil_crc[0]}} & wrong_bits),
         .no_start(no_start[0]),
         .stay_high(stay_high[0]),
         .start_ps(start_ps[32*0 +: 32]),
@@ -798,7 +799,7 @@ module s6_two_channel_tb;
         .position(position[48*1 +: 48]),
         .f1(f1[1]),
         .f2(f2[1]),
-        .spoil_crc(spoil_crc[1]),
+        .spoil_crc({5{spoil_crc[1]}} & wrong_bits),
         .no_start(no_start[1]),
         .stay_high(stay_high[1]),
         .start_ps(start_ps[32*1 +: 32]),
@@ -1000,7 +1001,7 @@ module s6_two_channel_tb;
                 age = word(BLOCK_STRIDE * ch + RESULT_AGE_RECOVERY - RESULT_STATUS);
                 check("CRC received", field(evidence, EVIDENCE_CRC_RECEIVED_LSB, EVIDENCE_CRC_RECEIVED_BITS), encoder_crc[5*ch +: 5]);
                 check("CRC computed", field(evidence, EVIDENCE_CRC_COMPUTED_LSB, EVIDENCE_CRC_COMPUTED_BITS),
-                      encoder_crc[5*ch +: 5] ^ {4'd0, spoil_crc[ch]});
+                      encoder_crc[5*ch +: 5] ^ ({5{spoil_crc[ch]}} & wrong_bits));
                 check_range("line delay", told_delay(ch),
                             delay_cycles(ch) + 2, delay_cycles(ch) + 2);
                 check_range("recovery time", field(age, AGE_RECOVERY_RECOVERY_CYCLES_LSB, AGE_RECOVERY_RECOVERY_CYCLES_BITS),
@@ -1507,12 +1508,18 @@ module s6_two_channel_tb;
                   $rtoi((fall_time - fall_time_before) / CLK_NS + 0.5));
 
         tell("wrong CRC");
-        // A wrong CRC on the first channel only: its last good position stays.
-        new_positions;
-        spoil_crc[FIRST] = 1'b1;
-        expect_fault(FIRST, CRC);
-        frame(CYCLE_NS);
-        check_evidence;
+        // A wrong CRC on the first channel only, each of its bits in turn: its last good position stays.
+        for (wrong_bits = 5'd16; wrong_bits != 5'd0; wrong_bits = wrong_bits >> 1) begin
+            new_positions;
+            spoil_crc[FIRST] = 1'b1;
+            expect_fault(FIRST, CRC);
+            frame(CYCLE_NS);
+            check_evidence;
+            // Two in a row would be a delay that is wrong.
+            new_positions;
+            frame(CYCLE_NS);
+        end
+        wrong_bits = 5'd1;
 
         tell("error bits F1 and F2");
         // F1 on the first channel, F2 on the last channel that has one.

@@ -394,6 +394,7 @@ module s6_two_channel_transaction (
                         give_up = 1'b1;
                     end
                 end
+                found = UPSET;
                 give_up = 1'b1;
             end
             PHASE_TAIL: begin
@@ -450,6 +451,7 @@ module s6_two_channel_transaction (
                 end
             end
             default: begin
+                found = UPSET;
                 give_up = 1'b1;
             end
         endcase

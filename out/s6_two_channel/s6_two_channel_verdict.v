@@ -81,7 +81,6 @@ module s6_two_channel_verdict (
     localparam  [19:0] F1_SET = 20'd16;
     localparam  [19:0] F2_CLEAR = 20'd32;
     localparam  [19:0] TRIGGER_OVERRUN = 20'd128;
-    localparam  [19:0] STORED_UPSET = 20'h80000;
 
     reg   [19:0] found_all;
     wire         crc_bad;
@@ -154,10 +153,6 @@ module s6_two_channel_verdict (
             if (!stored_ok) begin
                 found_all = found_all | PARALLEL_WRONG;
             end
-        end
-        // A frame is not given up for nothing: the state that says so was upset.
-        if (gave_up_now & !(|seen)) begin
-            found_all = found_all | STORED_UPSET;
         end
         // That is for the result to say.
         if (overrun & !measured) begin

@@ -8,9 +8,11 @@
 //!
 //! Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
 //! be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
+//! <!-- with has_guards -->
 //!
 //! A set waits for the buffer, and has no CRC of the encoder: a position that an upset has changed meanwhile shows by its parity, and goes out as
 //! one that is not fresh, with the cause of an upset.
+//! <!-- end -->
 
 use super::buffer::SetParts;
 use crate::several::each;

@@ -97,6 +97,7 @@ impl Logic for Transaction {
             Phase::Recovery => self.await_fall(),
             Phase::Abort => self.stay_quiet(),
             _ => {
+                self.found.next = self.upset.val();
                 self.give_up.next = true;
             }
         }

@@ -84,6 +84,7 @@ pub struct Verdict {
     pub displaced: Signal<Out, Bit>,
     #[start]
     chooser: PrimaryCause,
+    has_guards: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
     own_recovery_min_cycles: Constant<Bits<13>>,
     possible: Constant<Bits<20>>,
@@ -149,6 +150,7 @@ impl Verdict {
     /// A verdict with these fixed times and features.
     pub fn new(times: FixedTimes, features: Features) -> Self {
         Self::from_parts(VerdictParts {
+            has_guards: Constant::new(features.upset_guards),
             has_diagnosis: Constant::new(features.diagnosis),
             own_recovery_min_cycles: Constant::new(times.own_recovery_min_cycles.into()),
             possible: Constant::new(possible(features).into()),
@@ -213,8 +215,10 @@ impl Logic for Verdict {
             & !self.bad_now.val()
             & !self.upset.val()
             & !self.is_own.val();
-        // A frame is not given up for nothing: the state that says so was upset.
-        if self.upset.val() | (self.gave_up_now.q.val() & !self.seen.q.val().any()) {
+        // A frame is not given up for nothing: a register that says so was upset.
+        if self.upset.val()
+            | (self.has_guards.val() & self.gave_up_now.q.val() & !self.seen.q.val().any())
+        {
             self.found_all.next = self.found_all.val() | self.stored_upset.val();
         }
         // That is for the result to say.

@@ -11,9 +11,11 @@
 //!
 //! `RECOVERY` ends when DATA is HIGH, since the encoder is ready then. After a reset, an upset, or a frame at whose end DATA was HIGH, it lasts
 //! for the whole recovery time: the encoder may be in the middle of a frame, where DATA is any of its bits.
+//! <!-- with has_guards -->
 //!
 //! Guards against upsets: the codes of the states differ in two bits, the clock is what the state says, bits and the edge that takes none are
 //! counted twice, and a frame is good only if all of its bits have come.
+//! <!-- end -->
 
 use super::asked::SsiSpec;
 use super::cause;

@@ -3,15 +3,17 @@
 //! ```text
 //! verdict -> step 3, 4, .. 15, 0, 1, 2 -> byte = head, or what stood there -> RAM, bank `free`
 //!                                   \--> free becomes latest
-//! address 0 is read: latest becomes held; words 1 to 4 are read for the parity of the positions
+//! address 0 is read: latest becomes held
 //! ```
 //!
 //! A byte of step n is the low (n even) or high (n odd) one of word n / 2. Of the four banks three are in use: `held`, which the processor
 //! reads, `latest`, and `free`, which the next result is written to as a whole: what a reply does not bring is copied from `latest`, out of a
 //! second RAM that has nothing else to do. So a result changes at once, and a moment stands as long as the processor likes.
+//! <!-- with has_guards -->
 //!
 //! The parity of the positions, formed of the bits as they came, is compared when the moment is taken, in the clocks in which the
-//! processor still reads address 0, whose word is in no RAM.
+//! processor still reads address 0, whose word is in no RAM: then words 1 to 4 are read.
+//! <!-- end -->
 
 use super::ports::ReplyPartsIn;
 use super::verdict_bytes::VerdictBytes;

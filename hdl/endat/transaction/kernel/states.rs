@@ -164,6 +164,7 @@ impl Transaction {
             }
         }
         if !self.has_all.val() {
+            self.found.next = self.upset.val();
             self.give_up.next = true;
         }
     }
