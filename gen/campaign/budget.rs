@@ -1,6 +1,7 @@
 //! How much may go wrong: all limits in one place. A budget that is asserted fails the campaign; the others are what is wanted.
 
 use endat_sim::campaign::other::{ssi, t_format};
+use endat_sim::campaign::port::Port;
 use endat_sim::campaign::{Row, Tally};
 use std::fmt::Write;
 
@@ -71,6 +72,11 @@ fn is_card(row: &Row) -> bool {
     super::card::CardSubject::named(&row.subject).is_some()
 }
 
+/// Of a port or card with guards against upsets.
+fn is_guarded(row: &Row) -> bool {
+    !of_port(row, Port::Unguarded.name())
+}
+
 fn is_setting(row: &Row) -> bool {
     row.kind.starts_with("setting")
 }
@@ -83,8 +89,8 @@ pub const BUDGETS: [Budget; 26] = [
     Budget {
         campaign: "upsets",
         what: "wrong positions told as good",
-        bad: |r| r.class == "silent",
-        of: is_case,
+        bad: |r| r.class == "silent" && is_guarded(r),
+        of: |r| is_case(r) && is_guarded(r),
         limit_per_mille: 1.0,
         is_asserted: false,
     },
@@ -139,16 +145,16 @@ pub const BUDGETS: [Budget; 26] = [
     Budget {
         campaign: "upsets",
         what: "driver conflicts that outlast the frame",
-        bad: |r| r.class == "conflict",
-        of: is_case,
+        bad: |r| r.class == "conflict" && is_guarded(r),
+        of: |r| is_case(r) && is_guarded(r),
         limit_per_mille: 0.0,
         is_asserted: true,
     },
     Budget {
         campaign: "upsets",
         what: "wrong pulse counts without a cause",
-        bad: |r| r.class == "pulses",
-        of: is_case,
+        bad: |r| r.class == "pulses" && is_guarded(r),
+        of: |r| is_case(r) && is_guarded(r),
         limit_per_mille: 1.0,
         is_asserted: false,
     },

@@ -134,6 +134,22 @@ fn upsets(port: Port, draw: Draw, only: &str) -> Tally {
     tally
 }
 
+/// Without guards an upset may show a wrong position, which is what they are for; but nothing hangs. With them one in a thousand may.
+#[test]
+fn a_port_without_guards_shows_wrong_positions_and_never_hangs() {
+    let of = |port| {
+        let tally = upsets(port, Draw::Grid { moments: 4 }, "");
+        ["silent", "hang", "detected"].map(|class| tally.count(|row| row.class == class))
+    };
+    let [guarded, bare] = [Port::Position, Port::Unguarded].map(of);
+    assert_eq!([guarded[1], bare[1]], [0, 0], "{guarded:?} {bare:?}");
+    assert!(
+        bare[0] > 10 * guarded[0] && bare[0] > 50,
+        "{guarded:?} {bare:?}"
+    );
+    assert!(guarded[2] > bare[2], "{guarded:?} {bare:?}");
+}
+
 /// Catches registers that a campaign forgets, those on the falling edge among them.
 #[test]
 fn every_flip_flop_of_a_port_is_inverted_in_every_kind_of_frame() {
