@@ -1,7 +1,7 @@
 //! Ports that travel together through the blocks of a channel.
 //!
 //! ```text
-//! ChannelRegisters --PortSettings--> EncoderPort, Channel, FrameSettings
+//! ChannelRegisters --PortSettings--> EncoderPort, Channel, with guards FrameSettings
 //! ServiceChannel --ServiceOrders--> Channel
 //! AddInfo --AdditionalData--> Channel, EncoderPort, ServiceChannel, WholeResult
 //! Snapshot --FrameResult--> Channel, EncoderPort, WholeResult, ChannelRegisters
@@ -11,7 +11,7 @@
 use rtl_design::ports;
 use rust_hdl::prelude::*;
 
-/// Settings of one channel, as the host has written them; constant while `busy`.
+/// Settings of one channel, as the host has written them; constant while `busy` and in the cycle of a trigger.
 #[ports]
 pub struct PortSettings {
     /// EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.

@@ -101,6 +101,7 @@ pub struct Snapshot {
     swaps: Constant<Bit>,
     keeps: Constant<Bit>,
     never_withdraws: Constant<Bit>,
+    never_confirms: Constant<Bit>,
     upset_cause: Constant<Bits<5>>,
     upset_flag: Constant<Bits<20>>,
 }
@@ -114,6 +115,8 @@ pub enum Withdrawal {
     Swaps,
     /// No position is valid.
     Clears,
+    /// The same of a protocol that confirms none: each one may be withdrawn until the next result.
+    ClearsLate,
     /// The protocol withdraws none: everything that is wrong is known when the result comes.
     Never,
 }
@@ -130,6 +133,7 @@ impl Snapshot {
             swaps: Constant::new(withdrawal == Withdrawal::Swaps),
             keeps: Constant::new(withdrawal == Withdrawal::Restores),
             never_withdraws: Constant::new(withdrawal == Withdrawal::Never),
+            never_confirms: Constant::new(withdrawal == Withdrawal::ClearsLate),
             upset_cause: Constant::new(upset_cause.into()),
             upset_flag: Constant::new(upset_flag.into()),
         })
@@ -139,7 +143,7 @@ impl Snapshot {
 #[kernel]
 impl Logic for Snapshot {
     fn update(&mut self) {
-        // The time stamp waits for its position as long as a frame lasts: it is guarded, too.
+        // The time stamp waits for its position as long as a frame lasts: a guard looks at it, too.
         self.timed.d.next = self.first_fall.val() | self.latched.val();
         if self.timed.q.val() {
             self.moment_parity.d.next = self.moment.q.val().xor();
@@ -153,7 +157,7 @@ impl Logic for Snapshot {
         self.take_good.next =
             self.told.publish.val() & self.told.good.val() & !self.moment_wrong.val();
         self.take_back.next =
-            self.told.withdraw.val() & (self.unconfirmed.q.val() | !self.restores.val());
+            self.told.withdraw.val() & (self.unconfirmed.q.val() | self.never_confirms.val());
         self.ago.next = 0.into();
         if self.latched.val() {
             self.ago.next = self.delay_cycles.val();

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
-//! ring block of the channel --(ring stands still, channel not busy)--> configuration of the channel
+//! ring block of the channel --(ring stands still, channel not busy, no trigger)--> configuration of the channel
 //! ```
 //!
 //! The held words of all channels are loaded by the same signal, so they belong together: [`crate::card::register_bank`] says when. What stands for longer

@@ -12,7 +12,7 @@
 //! has a frame of its own. [`AddInfo`] keeps the record of the additional data that follow each position.
 //!
 //! The first frame after reset, after an aborted frame and after `calibrate` runs at the calibration clock and
-//! measures the propagation delay; all others run at the configured clock. Settings stay as they are while `busy`. With guards a frame
+//! measures the propagation delay; all others run at the configured clock. Settings stay as they are while `busy` and in the cycle of a trigger. With guards a frame
 //! takes a copy of them, and a setting that changes under way makes its position invalid.
 
 mod kernel;
@@ -147,6 +147,8 @@ pub struct Channel {
     _requests: usize,
     _seconds: usize,
     frame_command: Reg<Bits<6>>,
+    frame_width: Reg<Bits<6>>,
+    frame_period: Reg<Bits<11>>,
     frame_own: Reg<Bit>,
     frame_ride: Reg<Bit>,
     info_taken: Reg<Bit>,

@@ -73,9 +73,9 @@ pub struct Features {
 
 impl Features {
     /// Whether the receiver's word keeps the position before while the encoder may withdraw the new one: it has no other use then, but for
-    /// additional data and for a comparison.
+    /// additional data, for a running clock and for a comparison.
     pub const fn swaps(self) -> bool {
-        self.restore && !self.requests && !self.second_receiver
+        self.restore && !self.requests && !self.continuous && !self.second_receiver
     }
 
     /// Triggered positions only.

@@ -61,7 +61,7 @@ impl Logic for LineHealth {
         }
         self.over.d.next = self.under_way.val()
             & self.watchdog_us.val().any()
-            & (self.over.q.val() | (self.passed_us.q.val() == self.watchdog_us.val()));
+            & (self.over.q.val() | (self.passed_us.q.val() >= self.watchdog_us.val()));
         if self.level.val() {
             self.was_high.d.next = true;
         }

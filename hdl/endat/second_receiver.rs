@@ -207,7 +207,6 @@ impl Logic for SecondReceiver {
             | (self.check.f1.val() != self.receiver.verdict.f1.val())
             | (self.check.f2.val() != self.receiver.verdict.f2.val())
             | (self.crc_received.val() != self.receiver.crc_received.val())
-            // That of the next block begins as soon as its separator has come.
             | (self.check.crc_ok.val() != self.receiver.verdict.crc_ok.val())
             | (self.check.stored_ok.val() != self.receiver.verdict.stored_ok.val());
         // What has come stays where it is until a new block, or frame, begins.

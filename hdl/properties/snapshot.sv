@@ -17,6 +17,7 @@ always @(posedge clock) begin
 end
 // without RESTORES
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
+    if (!NEVER_CONFIRMS & $past(valid & !unconfirmed & !upset_now)) restored_only: assert (valid);
     if (!NEVER_WITHDRAWS & $past(take_back & !take_good)) restored: assert (!is_fresh & !valid);
 end
 // end

@@ -49,21 +49,3 @@ always @* begin
     as_it_came: assert (f_full | ((^word) == sum));
 end
 // end
-// without HAS_GUARDS
-// inputs: settings stay while the port is busy and in the cycle of a trigger, and a position has a bit at least; every other input may be anything in every cycle
-wire [11:0] f_settings = {frame, position_bits};
-reg  [11:0] f_before;
-reg f_stay; initial f_stay = 1'b0;
-always @(posedge clock) begin
-    f_before <= f_settings;
-    f_stay <= busy | trigger;
-end
-always @* begin
-    assume (!f_stay | (f_settings == f_before));
-    assume ((position_bits != 6'd0) & (position_bits <= 6'd48));
-    good_is_whole_copies: assert (!f_runs | f_begins | !second | frame[1]);
-    good_is_whole_left: assert (((state != AT_LOW) & (state != AT_HIGH)) | (left != 6'd0));
-    good_is_whole_last: assert ((state != AT_LAST) | f_begins | ((left == 6'd0) & (second == frame[1])));
-    good_is_whole_judged: assert ((state != AT_JUDGE) | unknown | not_high | ((left == 6'd0) & (second == frame[1])));
-end
-// end

@@ -16,7 +16,7 @@
 // has a frame of its own. AddInfo keeps the record of the additional data that follow each position.
 //
 // The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and
-// measures the propagation delay; all others run at the configured clock. Settings stay as they are while busy. With guards a frame
+// measures the propagation delay; all others run at the configured clock. Settings stay as they are while busy and in the cycle of a trigger. With guards a frame
 // takes a copy of them, and a setting that changes under way makes its position invalid.
 module s6_two_channel_channel (
     // System clock.
@@ -99,7 +99,7 @@ module s6_two_channel_channel (
     // Strobe: a trigger has been lost.
     wire         displaced;
     wire   [5:0] command_set;
-    wire   [5:0] width_set;
+    reg    [5:0] width_set;
     wire   [3:0] filter_set;
     wire   [5:0] window_set;
     wire   [5:0] command_now;
@@ -353,16 +353,16 @@ module s6_two_channel_channel (
 
     // Settings of the frame, and the clock period that it runs with.
     assign command_set = command;
-    assign width_set = position_bits;
-    assign filter_set = filter_cycles;
-    assign window_set = start_window_cycles;
 
     always @* begin
+        width_set = position_bits;
         period = period_cycles;
         if (transaction_slow) begin
             period = CALIBRATION_PERIOD_CYCLES;
         end
     end
+    assign filter_set = filter_cycles;
+    assign window_set = start_window_cycles;
     // Which command the next frame has is settled before it begins, and stays until all has been told of it.
     assign command_now = command_set;
     assign payload_bits = width_set;

@@ -7,7 +7,7 @@
 // Registers of one channel: the result as the host reads it, and the configuration.
 //
 // channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
-// ring block of the channel --(ring stands still, channel not busy)--> configuration of the channel
+// ring block of the channel --(ring stands still, channel not busy, no trigger)--> configuration of the channel
 //
 // The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. What stands for longer
 // than a trigger says so: the age counts the time that the words are held, stale a trigger that has come since. A byte that is not selected

@@ -209,7 +209,6 @@ module s6_two_channel_verdict (
             lost_now <= 1'b0;
             flags_now <= 20'd0;
         end else begin
-            // The frame's bits stay where they are until the verdict: an upset of one of them shows in its CRC.
             // Synthesis does not see by itself that some flags are never set.
             seen <= found & POSSIBLE;
             taken_now <= answer_taken;

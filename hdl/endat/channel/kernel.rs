@@ -28,6 +28,11 @@ impl Logic for Channel {
             command_set = command, width_set = position_bits, filter_set = filter_cycles,
             filter_half_set = filter_half, window_set = start_window_cycles, period = period_cycles
         );
+        // Where a service says width and rate, it may do so at any time.
+        if self.has_requests.val() {
+            self.width_set.next = self.frame_width.q.val();
+            self.period.next = self.frame_period.q.val();
+        }
         connect!(self.transaction.limits <= self.settings_in;
             first_low_extra_cycles, start_timeout_us, recovery_limit_cycles
         );
@@ -86,6 +91,8 @@ impl Logic for Channel {
             & self.has_requests.val()
         {
             self.frame_command.d.next = self.settings_in.command.val();
+            self.frame_width.d.next = self.settings_in.position_bits.val();
+            self.frame_period.d.next = self.settings_in.period_cycles.val();
             self.frame_own.d.next = self.own_wanted.val();
             self.frame_ride.d.next =
                 self.ride_wanted.val() & self.transaction.calibrated.val() & !self.own_wanted.val();

@@ -169,7 +169,6 @@ impl Verdict {
 #[kernel]
 impl Logic for Verdict {
     fn update(&mut self) {
-        // The frame's bits stay where they are until the verdict: an upset of one of them shows in its CRC.
         // Synthesis does not see by itself that some flags are never set.
         self.seen.d.next = self.found.val() & self.possible.val();
         self.taken_now.d.next = self.answer_taken.val();

@@ -7,14 +7,14 @@
 //!              HIGH? ^           ^ taken             ^ taken    ^ LOW? result   ^ HIGH? if not: withdrawn
 //! ```
 //!
-//! With `frame` bit 1 the clock goes on: a LOW bit, and the same position once more.
+//! A frame is good only if all of its bits have come. With `frame` bit 1 the clock goes on: a LOW bit, and the same position once more.
 //!
 //! `RECOVERY` ends when DATA is HIGH, since the encoder is ready then. After a reset, an upset, or a frame at whose end DATA was HIGH, it lasts
 //! for the whole recovery time: the encoder may be in the middle of a frame, where DATA is any of its bits.
 //! <!-- with has_guards -->
 //!
 //! Guards against upsets: the codes of the states differ in two bits, the clock is what the state says, bits and the edge that takes none are
-//! counted twice, and a frame is good only if all of its bits have come.
+//! counted twice.
 //! <!-- end -->
 
 use super::asked::SsiSpec;
@@ -166,7 +166,7 @@ impl SsiPort {
             holds_end: Constant::new(asked.holds_end),
             filter: InputFilter::new(Features::NONE),
             snapshot: Snapshot::new(
-                Withdrawal::Clears,
+                Withdrawal::ClearsLate,
                 guards,
                 cause::UPSET,
                 cause::flag(cause::UPSET),
@@ -440,10 +440,9 @@ impl Logic for SsiPort {
             & !self.unknown.q.val()
             & !self.not_high.q.val();
         // What is stored is what came.
-        self.is_upset.next = self.has_guards.val()
-            & (self.is_torn.val()
-                | self.is_short.val()
-                | (self.word.q.val().xor() ^ self.sum.q.val()));
+        self.is_upset.next = self.is_short.val()
+            | (self.has_guards.val()
+                & (self.is_torn.val() | (self.word.q.val().xor() ^ self.sum.q.val())));
         self.found.next = bit_cast::<6, 1>(self.unknown.q.val().into())
             | (bit_cast::<6, 1>(self.not_high.q.val().into()) << 1)
             | (bit_cast::<6, 1>(self.not_low.q.val().into()) << 2)

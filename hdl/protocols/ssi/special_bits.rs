@@ -7,8 +7,11 @@
 //! ```
 //!
 //! `left` counts the bits of a copy down to 1; the port keeps it twice. A parity bit directly after the position belongs to the position.
+//! CRC and parity are computed from zero for each copy.
+//! <!-- with has_guards -->
 //!
-//! Guards against upsets: the sum of the stored bits is kept as they come; CRC and parity are computed from zero for each copy.
+//! A guard against upsets: the sum of the stored bits is kept as they come.
+//! <!-- end -->
 
 use super::cause;
 use super::specials::{Places, Specials, CRC_POLYNOMIAL, SHOWN_MAX};

@@ -51,9 +51,23 @@ fn a_plug_that_is_pulled_in_an_answer_never_leaves_a_wrong_position() {
 /// With guards a frame has the settings of the cycle with its trigger; without them they stay as they are while the channel is busy.
 #[test]
 fn settings_that_change_in_a_frame_count_for_the_next_one() {
+    change_in_a_frame(Features::GUARDED, true);
+}
+
+/// A service finds width, command and rate of the encoder, and may say so while a frame of a trigger is under way.
+#[test]
+fn width_command_and_rate_of_a_served_channel_count_for_the_next_frame() {
+    let requests = Features {
+        requests: true,
+        ..Features::CARD
+    };
+    change_in_a_frame(requests, false);
+}
+
+fn change_in_a_frame(features: Features, all: bool) {
     let mut rng = Rng::new(3);
     for command in [SendPosition, SendPositionAddInfo] {
-        let setup = Setup::new((32_000_000, 4_000_000), command, 25, 20.0).with(Features::GUARDED);
+        let setup = Setup::new((32_000_000, 4_000_000), command, 25, 20.0).with(features);
         let measured = setup.measured();
         let frame = {
             let mut rig = setup.on(measured.clone());
@@ -70,9 +84,11 @@ fn settings_that_change_in_a_frame_count_for_the_next_one() {
             rig.set("position_bits", u128::from(rng.in_range(1, 48)));
             rig.set("command", [7, 56][rng.in_range(0, 1) as usize]);
             rig.set("period_cycles", u128::from(rng.in_range(4, 60)));
-            rig.set("filter_cycles", u128::from(rng.in_range(0, 2)));
-            rig.set("start_window_cycles", 1);
-            rig.set("recovery_limit_cycles", 3500);
+            if all {
+                rig.set("filter_cycles", u128::from(rng.in_range(0, 2)));
+                rig.set("start_window_cycles", 1);
+                rig.set("recovery_limit_cycles", 3500);
+            }
             assert!(rig.run_until_done(MS, |b| b.results().len() > results));
             let result = rig.results().last().unwrap().clone();
             let sent = rig.frames(0)[0].position;

@@ -1,6 +1,7 @@
 //! Every fault ends in its own cause, within its limit; the last good position stays and the next frame is good again.
 
 use super::rig::*;
+use endat_hdl::endat::channel::Features;
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::LEAD_PULSES;
 use endat_sim::{
@@ -271,6 +272,29 @@ fn data_that_does_not_fall_withdraws_the_position_and_brings_back_the_one_before
     settle(&mut rig);
     good_frame(&mut rig);
     assert_eq!((rig.violations(0), rig.conflicts(0)), (&[][..], vec![]));
+}
+
+/// Without `restore` no position is valid after one that was withdrawn; with a copy of its own the position before comes back as well.
+#[test]
+fn a_withdrawn_position_gives_way_as_its_port_says() {
+    let with_copy = Features {
+        restore: true,
+        second_receiver: true,
+        ..Features::NONE
+    };
+    for (features, valid) in [(Features::NONE, 0), (with_copy, 1), (Features::GUARDED, 1)] {
+        let setup = Setup::card().defect(1, Defect::LateFall(MS)).with(features);
+        let mut rig = setup.ready();
+        let before = good_frame(&mut rig);
+        good_frame(&mut rig);
+        assert!(rig.run_until_done(MS, |b| b.get("cause") != 0));
+        let shown = ["position_valid", "fresh"].map(|name| rig.get(name));
+        assert_eq!(shown, [valid, 0], "{features:?}");
+        if valid == 1 {
+            let shown = ["position", "first_fall_timestamp"].map(|name| rig.get(name) as u64);
+            assert_eq!(shown, [before.position, before.first_fall_timestamp]);
+        }
+    }
 }
 
 #[test]
