@@ -15,9 +15,13 @@ always @(posedge clock) begin
         if (!$past(publish | late_fault | upset_now)) faults_with_results: assert ($stable({cause_held, flags_held}));
     end
 end
+// without NEVER_CONFIRMS
+always @(posedge clock) if (f_past_valid & !$past(reset)) begin
+    if ($past(valid & !unconfirmed & !upset_now)) restored_only: assert (valid);
+end
+// end
 // without RESTORES
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-    if (!NEVER_CONFIRMS & $past(valid & !unconfirmed & !upset_now)) restored_only: assert (valid);
     if (!NEVER_WITHDRAWS & $past(take_back & !take_good)) restored: assert (!is_fresh & !valid);
 end
 // end

@@ -296,6 +296,9 @@ module s6_two_channel_snapshot (
             if (!$past(publish | late_fault | upset_now)) `FORMAL_LABEL(faults_with_results) assert ($stable({cause_held, flags_held}));
         end
     end
+    always @(posedge clock) if (f_past_valid & !$past(reset)) begin
+        if ($past(valid & !unconfirmed & !upset_now)) `FORMAL_LABEL(restored_only) assert (valid);
+    end
     reg [91:0] f_last; reg f_last_valid;
     // the next frame has begun
     reg f_newer; initial f_newer = 1'b0;
