@@ -231,8 +231,9 @@ impl Draft<'_> {
             found.map(|c| c.value != 0)
         };
         let unknown = |line: &str| {
-            let problem = "the block has no constant of this name";
-            self.block.error(line, problem, "name one of its constants")
+            let problem = "the block has no constant of this name, or no `end` follows";
+            let remedy = "name one of its constants, and end the section";
+            self.block.error(line, problem, remedy)
         };
         let properties =
             selected(module.properties.lines(), ("// ", ""), is_set).map_err(unknown)?;

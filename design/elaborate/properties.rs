@@ -115,31 +115,35 @@ pub fn properties(text: &str) -> Vec<Property> {
     found
 }
 
-/// The lines of a text that a block with these constants has: `open` and `close` are what stands around `with NAME`, `without NAME` and `end`.
+/// Keeps the lines that apply to a block. `open` and `close` enclose the marks `with NAME`, `without NAME` and `end`; `is_set` knows the
+/// block's constants.
 ///
 /// # Errors
-/// The line that names a constant which the block does not have.
+/// The mark that names a constant which the block does not have, or that no `end` follows.
 pub(super) fn selected<'a>(
     lines: impl Iterator<Item = &'a str>,
     (open, close): (&str, &str),
     is_set: impl Fn(&str) -> Option<bool>,
 ) -> Result<Vec<&'a str>, &'a str> {
     let mut shown = true;
+    let mut opened = None;
     let mut found = vec![];
     for line in lines {
         let mark = line.trim().strip_prefix(open);
         let mark = mark.and_then(|rest| rest.strip_suffix(close));
         let mut words = mark.unwrap_or_default().split(' ');
         match (words.next(), words.next(), words.next()) {
-            (Some("end"), None, _) => shown = true,
+            (Some("end"), None, _) => (shown, opened) = (true, None),
+            (Some("with" | "without"), Some(_), None) if opened.is_some() => return Err(line),
             (Some(with @ ("with" | "without")), Some(name), None) => {
                 shown = is_set(name).ok_or(line)? == (with == "with");
+                opened = Some(line);
             }
             _ if shown => found.push(line),
             _ => {}
         }
     }
-    Ok(found)
+    opened.map_or(Ok(found), Err)
 }
 
 /// `CONSTANT (what it is)`.
@@ -188,6 +192,30 @@ mod tests {
 
     const TEXT: &str = "// a: First.\n// a_b: Second.\nreg f_x;\nalways @* begin\n    a: assert (1);\n    a_b_lemma: assert (1);\nend\n\
         `ifdef FORMAL_ANY_STATE\n// c unless HAS_X (an x), HAS_Y (a y): Third: any.\nalways @* if (x) c: assert (1);\n`endif\n// Note: none.\n";
+
+    /// Catches a section that a block gets without its part, and one without an end, which would hide all that follows.
+    #[test]
+    fn a_block_gets_the_lines_of_its_parts() {
+        let is_set = |name: &str| match name {
+            "A" => Some(true),
+            "B" => Some(false),
+            _ => None,
+        };
+        let of = |text: &'static str| selected(text.lines(), ("// ", ""), is_set);
+        let text = "one\n// with A\ntwo\n// end\n// with B\nthree\n// end\n// without B\nfour\n// end\n// with words\n";
+        assert_eq!(of(&text[..text.len() - 14]), Ok(vec!["one", "two", "four"]));
+        assert_eq!(
+            of("// with words of a comment\none"),
+            Ok(vec!["// with words of a comment", "one"])
+        );
+        assert_eq!(of(text), Err("// with words"), "no such constant");
+        assert_eq!(of("// with A\none\n"), Err("// with A"), "no end");
+        assert_eq!(
+            of("// with A\n// without B\none\n// end\n"),
+            Err("// without B"),
+            "one in another"
+        );
+    }
 
     #[test]
     fn a_text_gives_its_properties() {

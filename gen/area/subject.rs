@@ -295,7 +295,7 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
         )?,
         Subject::new(
             "crc5_stored",
-            "CRC5 of the stored word, the guard beside it",
+            "CRC5 of the stored word, a guard",
             Crc5Check::default(),
         )?,
     ])

@@ -181,12 +181,6 @@ impl SsiPort {
     }
 }
 
-impl Default for SsiPort {
-    fn default() -> Self {
-        Self::new(&SsiSpec::default(), false)
-    }
-}
-
 #[kernel]
 impl Logic for SsiPort {
     fn update(&mut self) {
