@@ -9,7 +9,7 @@ mod speed;
 mod subject;
 
 pub use cells::{logic_cells, Packed};
-pub use report::{report, Line, Peer, Report, PEERS};
+pub use report::{report, Line, Peer, Report, Scope, PEERS};
 pub use speed::{speed, Device, Speed, DEVICES};
 pub use subject::{subjects, Subject};
 

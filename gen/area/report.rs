@@ -5,6 +5,7 @@ use super::{YOSYS, YOSYS_VERSION};
 use crate::error::GenError;
 use serde::Serialize;
 use std::fmt;
+use std::path::Path;
 
 /// Somebody else's receiver on the same tools: position only, no CRC check, no propagation delay compensation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -67,12 +68,23 @@ pub struct Report {
     pub peers: [Peer; 3],
 }
 
-/// Measures everything; with `with_speed`, card and channel are also placed and routed.
-pub fn report(
-    only: &[String],
-    with_speed: bool,
-    progress: &dyn Fn(&str),
-) -> Result<Report, GenError> {
+/// How much is measured.
+pub struct Scope<'a> {
+    /// Names of the subjects; all if empty.
+    pub only: &'a [String],
+    /// Card and channel are also placed and routed.
+    pub with_speed: bool,
+    /// Folder in which the files of the tools remain.
+    pub out: Option<&'a Path>,
+}
+
+/// Measures area, and speed where it is asked for.
+pub fn report(scope: &Scope, progress: &dyn Fn(&str)) -> Result<Report, GenError> {
+    let Scope {
+        only,
+        with_speed,
+        out,
+    } = *scope;
     let version = version()?;
     if !version.starts_with(YOSYS_VERSION) {
         return Err(GenError::input(format!(
@@ -96,7 +108,7 @@ pub fn report(
     for subject in subjects {
         progress(subject.name);
         let files = subject.files();
-        let folder = scratch.path().join(subject.name);
+        let folder = out.unwrap_or(scratch.path()).join(subject.name);
         let usage = |family| synthesise(&folder, &files, subject.name, family).map(|s| s.usage);
         let measure = |device: &Device| speed(&folder, &subject.design, &files, device);
         let fast = with_speed && ["card", "channel"].contains(&subject.name);

@@ -5,6 +5,7 @@ use super::{to_json, Outcome};
 use crate::area;
 use crate::error::GenError;
 use clap::Args;
+use std::path::PathBuf;
 
 /// Arguments of `area`.
 #[derive(Args)]
@@ -15,6 +16,9 @@ pub struct AreaArgs {
     /// Measure only these, by name
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     only: Vec<String>,
+    /// Keep sources, netlists and reports of the tools in this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -23,7 +27,12 @@ pub struct AreaArgs {
 /// Runs the command.
 pub fn run(arguments: &AreaArgs) -> Result<Outcome, GenError> {
     let steps = Steps::new(None);
-    let report = area::report(&arguments.only, arguments.fmax, &|name| steps.begin(name))?;
+    let scope = area::Scope {
+        only: &arguments.only,
+        with_speed: arguments.fmax,
+        out: arguments.out.as_deref(),
+    };
+    let report = area::report(&scope, &|name| steps.begin(name))?;
     drop(steps);
     Ok(Outcome::good(if arguments.json {
         to_json(&report)?

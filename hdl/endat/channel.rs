@@ -41,7 +41,7 @@ use rust_hdl::prelude::*;
 /// From the cycle with the trigger strobe to the first cycle with the EnDat clock low, at every width and rate.
 pub const TRIGGER_TO_FIRST_FALL_CYCLES: u64 = 3;
 /// From the cycle in which the bit behind the last CRC bit is sampled to the one with the result strobe, at every width and rate.
-pub const TAIL_SAMPLE_TO_RESULT_CYCLES: u64 = 2;
+pub const TAIL_SAMPLE_TO_RESULT_CYCLES: u64 = 3;
 /// From the time in `first_fall_timestamp` to the first cycle with the EnDat clock low.
 pub const TIMESTAMP_TO_FIRST_FALL_CYCLES: u64 = 2;
 /// What registers at both pins and the synchroniser add to `delay_cycles`; the filter adds its length.
@@ -214,7 +214,9 @@ impl Channel {
             has_guards: Constant::new(guards),
             has_requests: Constant::new(features.requests),
             has_double: Constant::new(features.double_edge),
-            needs_four: Constant::new(features.double_edge && features.requests),
+            needs_four: Constant::new(
+                features.double_edge && (features.requests || features.continuous),
+            ),
             fixed_mode: Constant::new(line_delay::mode::FIXED.into()),
             parameter_bits: Constant::new(u64::from(PARAMETER_BITS).into()),
             test_value_bits: Constant::new(u64::from(TEST_VALUE_BITS).into()),

@@ -95,6 +95,8 @@ pub struct LineDelay {
     edge_late: Reg<Bit>,
     edge_error: Reg<Bits<6>>,
     edge_outside: Reg<Bit>,
+    /// A clock pulse whose cell counts left the receiver in the cycle before.
+    pulse_leaves: Reg<Bit>,
     shorten: Reg<Bit>,
     lengthen: Reg<Bit>,
     parity: Reg<Bit>,
@@ -290,8 +292,14 @@ impl Logic for LineDelay {
     /// The pulse of a cell, and how far its data edge is from the middle.
     fn measure_edge(&mut self) {
         // Of the edges before an acquired start bit that which launched it is the only one that counts.
-        self.cells.pulse.next = self.acquired.val()
+        self.pulse_leaves.d.next = self.acquired.val()
             | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
+        self.cells.pulse.next = self.pulse_leaves.q.val();
+        // With two system clock cycles in a bit there is no time to register it.
+        if self.has_double.val() {
+            self.cells.pulse.next = self.acquired.val()
+                | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
+        }
 
         // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
         // is as good as one that is seen with it: the limits of the bit are as far from both.

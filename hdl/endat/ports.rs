@@ -119,6 +119,8 @@ pub struct Progress {
     pub all_sent: Bit,
     /// All but one.
     pub one_to_send: Bit,
+    /// Strobe: the last one is counted in this cycle.
+    pub last_sent: Bit,
     /// The cell of each pulse that was sent has ended.
     pub none_under_way: Bit,
     /// The counts of cells and pulses agree that this cell is the last one.

@@ -90,6 +90,10 @@ pub struct Receiver {
     #[start(Field::Done)]
     field: Reg<Field>,
     left: Reg<Bits<7>>,
+    /// The cell that comes is the last one of the payload.
+    payload_ends: Reg<Bit>,
+    /// The cell that comes is the last one of the CRC.
+    crc_ends: Reg<Bit>,
     to_send: Reg<Bits<7>>,
     under_way: Reg<Bits<3>>,
     word: Reg<Bits<50>>,

@@ -175,6 +175,10 @@ pub struct Transaction {
     leaving: Reg<Bit>,
     #[start(true)]
     cleared: Reg<Bit>,
+    /// The recovery time has begun in the cycle before.
+    is_back: Reg<Bit>,
+    /// A running clock has been left in the cycle before.
+    left: Reg<Bit>,
     high_at_tick: Reg<Bit>,
     owing: Reg<Bit>,
     measuring: Reg<Bit>,

@@ -104,6 +104,9 @@ impl Logic for Receiver {
 
     /// The parts of an answer, one after the other.
     fn go_on(&mut self) {
+        // Compared in the cycle before: a count stays for two cycles at least.
+        self.payload_ends.d.next = self.left.q.val() == (self.cells_after.val() + 6);
+        self.crc_ends.d.next = self.left.q.val() == (self.cells_after.val() + 1);
         match self.field.q.val() {
             Field::Skip => {
                 if self.skip_step.val() {
@@ -145,7 +148,7 @@ impl Logic for Receiver {
                 if self.cells.sample.val() {
                     self.covered_bit.next = true;
                     // This bit, five of the CRC, and what comes behind.
-                    if self.left.q.val() == (self.cells_after.val() + 6) {
+                    if self.payload_ends.q.val() {
                         self.last_payload.d.next = true;
                         self.field.d.next = Field::Crc;
                     }
@@ -154,7 +157,7 @@ impl Logic for Receiver {
             Field::Crc => {
                 if self.cells.sample.val() {
                     self.crc_bit.next = true;
-                    if self.left.q.val() == (self.cells_after.val() + 1) {
+                    if self.crc_ends.q.val() {
                         self.last_taken.d.next = true;
                         self.field.d.next = Field::Done;
                         if self.infos_left.q.val().any() & self.has_all.val() {
@@ -424,6 +427,8 @@ impl Logic for Receiver {
         self.progress.started.next = self.started_now.q.val();
         self.progress.all_sent.next = !self.to_send.q.val().any();
         self.progress.one_to_send.next = self.to_send.q.val() == 1;
+        self.progress.last_sent.next =
+            (self.to_send.q.val() == 1) & self.one_less.val() & !self.one_more.val();
         self.progress.none_under_way.next = self.to_send.q.val() == self.left.q.val();
         // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
         self.used.d.next = self.progress.all_sent.val()

@@ -59,7 +59,9 @@ impl Logic for Transaction {
         self.answer_taken.next = false;
         self.announce.next = false;
         self.probed.next = false;
-        self.endless.next = (self.timer.q.val() & self.frame_us.val()).any();
+        // The timer of a wait that was longer than a frame goes on for a cycle after it.
+        self.endless.next = (self.timer.q.val() & self.frame_us.val()).any()
+            & !(self.cleared.q.val() & self.has_all.val());
         self.watched.next = false;
         self.found_late.next = false;
         self.found.next = 0.into();
@@ -109,9 +111,8 @@ impl Logic for Transaction {
             self.found.next = self.found.val() | self.too_long.val();
             self.give_up.next = true;
         }
-        // What is given up has that as its one result.
+        // What is given up has that as its one result; the verdict looks at that for `proof`.
         if self.give_up.val() | self.verdict.gave_up.val() {
-            self.proof.next = false;
             self.announce.next = false;
         }
         // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
@@ -121,7 +122,9 @@ impl Logic for Transaction {
                 | self.next_frame.line_wanted.val()
                 | !self.known.val()
                 | (self.next_frame.stop_at_error.val() & self.verdict.is_bad.val()));
-        if self.leave.val() {
+        // Later, for the answer that comes with it is published first.
+        self.left.d.next = self.leave.val();
+        if self.left.q.val() {
             self.normal_end.next = true;
         }
         if self.proof.val() & self.verdict.is_pending.val() & !self.going.val() {
@@ -164,17 +167,22 @@ impl Logic for Transaction {
         // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
         self.timer_hit.d.next =
             (self.timer.q.val() >= self.timer_limit.q.val()) & !self.cleared.q.val();
-        self.cleared.d.next = self.timer_clear.val() | self.accept.val() | self.rise_back.val();
-        // With the cycles that pass before the timer sees the beginning of its span; a frame that is given up has another one.
-        if self.rise_back.val() {
-            self.timer.d.next = bit_cast::<16, 3>(self.last_edge.ago_cycles.val()) + 2;
-        }
+        self.cleared.d.next = self.timer_clear.val() | self.rise_back.val();
         if self.timer_clear.val() {
-            self.timer.d.next = 0.into();
             self.timer_hit.d.next = false;
         }
-        if self.accept.val() {
-            self.timer.d.next = 2.into();
+        // The timer follows a cycle later: whatever begins a span is registered first. It starts with the cycles that have passed by then,
+        // but for a wait for DATA, whose limit is as much shorter.
+        self.is_back.d.next = self.rise_back.val() & !self.verdict.gave_up.val();
+        if self.cleared.q.val() {
+            self.timer.d.next = 0.into();
+        }
+        if self.is_back.q.val() {
+            self.timer.d.next = bit_cast::<16, 3>(self.last_edge.ago_cycles.val())
+                + bit_cast::<16, 2>((bit_cast::<2, 1>(self.timer_step.q.val().into())) | 2);
+        }
+        if self.start_now.q.val() {
+            self.timer.d.next = 3.into();
         }
     }
 
@@ -184,11 +192,13 @@ impl Logic for Transaction {
         self.in_recovery.next = self.phase.q.val() == Phase::Recovery;
         self.cell_control.last_cell.next = self.in_tail.val() & self.was_center.q.val();
         connect!(self.last_edge <= self;
-            clock, reset, start = accept, in_tail, in_recovery, will_rise, going, running
+            clock, reset, in_tail, in_recovery, will_rise, going, running
         );
         connect!(self.last_edge <= self.progress;
-            last_bit, no_pulse_left = all_sent, one_pulse_left = one_to_send, none_under_way, started
+            last_bit, no_pulse_left = all_sent, one_pulse_left = one_to_send, last_sent, none_under_way,
+            started
         );
+        self.last_edge.start.next = self.start_now.q.val();
         self.rise_back.next = self.last_edge.comes.val();
         self.last_edge.was_center.next = self.was_center.q.val();
         self.last_edge.tail_sampled.next = self.tail_sampled.q.val();
@@ -239,7 +249,7 @@ impl Logic for Transaction {
         self.verdict.lost.next = self.lost.val();
         self.known.next =
             self.is_calibrated.q.val() | (self.has_alignment.val() & self.is_fixed.val());
-        if self.verdict.told.publish.val() | self.refuse.val() {
+        if self.verdict.publishes.val() | self.refuse.val() {
             self.owing.d.next = false;
         }
         // What else becomes of that frame is the trigger's result, not something that comes behind it.
@@ -262,13 +272,16 @@ impl Logic for Transaction {
     /// What a frame begins with.
     fn begin_frame(&mut self) {
         if self.accept.val() {
+            self.slow_now.d.next = !self.known.val();
+        }
+        // A cycle later: the first clock edge has not come by then.
+        if self.start_now.q.val() {
             self.measuring.d.next = !self.known.val();
             self.under_way.d.next = true;
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
             self.acquiring.d.next =
                 !self.known.val() & !(self.has_alignment.val() & self.passes.q.val().any());
-            self.slow_now.d.next = !self.known.val();
             self.tail_sampled.d.next = false;
             self.late.d.next = false;
         }

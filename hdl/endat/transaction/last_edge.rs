@@ -29,6 +29,8 @@ pub struct LastEdge {
     pub no_pulse_left: Signal<In, Bit>,
     /// One is left.
     pub one_pulse_left: Signal<In, Bit>,
+    /// Strobe: the last one is counted in this cycle.
+    pub last_sent: Signal<In, Bit>,
     /// Strobe: CLOCK rises in the next cycle.
     pub will_rise: Signal<In, Bit>,
     /// None that was sent is still to come back.
@@ -85,7 +87,7 @@ impl LastEdge {
 #[kernel]
 impl Logic for LastEdge {
     fn update(&mut self) {
-        self.sent.d.next = self.no_pulse_left.val();
+        self.sent.d.next = self.no_pulse_left.val() | self.last_sent.val();
         // With two system clock cycles in a bit there is no time to count this pulse.
         if self.has_double.val() {
             self.one_left.d.next = self.one_pulse_left.val();

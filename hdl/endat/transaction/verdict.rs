@@ -1,10 +1,11 @@
 //! Verdict: what has happened to a frame is registered, then told with its primary cause.
 //!
 //! ```text
-//! answer_taken, give_up ...  ____/~~\____________
-//! taken, gave_up             _______/~~\_________    the flags are put together
-//! prove                      ___________/~~\_____    what follows the answer fits, too
-//! publish, late_fault, over  ______________/~~\__    cause and flags stay until the next one
+//! answer_taken, give_up ...  ____/~~\_______________
+//! taken, gave_up             _______/~~\____________    the flags are put together
+//! prove                      ___________/~~\________    the bit that follows the answer fits, too
+//! decides                    ______________/~~\_____    a cycle later: nothing that is sampled now is in this path
+//! publish, late_fault, over  _________________/~~\__    cause and flags stay until the next one
 //! ```
 //!
 //! An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
@@ -67,7 +68,7 @@ pub struct Verdict {
     pub is_received: Signal<Out, Bit>,
     /// With `taken`: the CRC is wrong, and was so in the frame before.
     pub is_doubtful: Signal<Out, Bit>,
-    /// With `prove`: the answer has a wrong CRC, or an alarm.
+    /// From `taken` on: the answer has a wrong CRC, or an alarm.
     pub is_bad: Signal<Out, Bit>,
     /// Strobe: `give_up`, a cycle later.
     pub gave_up: Signal<Out, Bit>,
@@ -76,7 +77,9 @@ pub struct Verdict {
     /// What has become of a frame.
     #[bundle]
     pub told: ToldOut,
-    /// Strobe, instead of `publish`: the delay is measured, now the position itself.
+    /// Strobe one cycle before `publish`.
+    pub publishes: Signal<Out, Bit>,
+    /// Strobe, instead of `publishes`: the delay is measured, the position itself comes next.
     pub once_more: Signal<Out, Bit>,
     /// Strobe: a frame has ended in whatever way.
     pub over: Signal<Out, Bit>,
@@ -96,7 +99,14 @@ pub struct Verdict {
     trigger_overrun: Constant<Bits<20>>,
     too_short: Constant<Bits<20>>,
     stored_upset: Constant<Bits<20>>,
+    /// Flags that came with the last strobe.
     seen: Reg<Bits<20>>,
+    /// The CRC did not fit in the cycle before.
+    crc_bad: Reg<Bit>,
+    /// Nor did CRC, F1 and F2 together.
+    answer_bad: Reg<Bit>,
+    /// High for one cycle after `prove`, unless the frame was given up.
+    prove_seen: Reg<Bit>,
     taken_now: Reg<Bit>,
     gave_up_now: Reg<Bit>,
     gave_up_late: Reg<Bit>,
@@ -107,7 +117,6 @@ pub struct Verdict {
     was_bad: Reg<Bit>,
     publish_now: Reg<Bit>,
     good_now: Reg<Bit>,
-    once_more_now: Reg<Bit>,
     is_silent: Reg<Bit>,
     pending: Reg<Bit>,
     withdraw_now: Reg<Bit>,
@@ -117,9 +126,9 @@ pub struct Verdict {
     lost_now: Reg<Bit>,
     flags_now: Reg<Bits<20>>,
     found_all: Signal<Local, Bits<20>>,
-    crc_bad: Signal<Local, Bit>,
-    bad_now: Signal<Local, Bit>,
+    bad_crc: Signal<Local, Bit>,
     proven: Signal<Local, Bit>,
+    publishes_now: Signal<Local, Bit>,
     upset: Signal<Local, Bit>,
     measured: Signal<Local, Bit>,
     recovery_min: Signal<Local, Bits<13>>,
@@ -173,22 +182,29 @@ impl Logic for Verdict {
         self.seen.d.next = self.found.val() & self.possible.val();
         self.taken_now.d.next = self.answer_taken.val();
         self.gave_up_now.d.next = self.give_up.val() & !self.gave_up_now.q.val();
-        self.gave_up_late.d.next =
-            self.give_up.val() & !self.gave_up_now.q.val() & self.is_late.val();
+        // Nothing has been published of a frame that measured.
+        self.gave_up_late.d.next = self.give_up.val()
+            & !self.gave_up_now.q.val()
+            & self.is_late.val()
+            & !self.measured.val();
         self.refused.d.next = self.refuse.val();
         self.announced.d.next = self.announce.val() & self.has_diagnosis.val();
         self.ended.d.next = self.normal_end.val();
 
         // Of what has been told: the choice is kept out of the path of what is found.
         self.chooser.flags.next = self.flags_now.q.val();
-        self.crc_bad.next = !(self.check.crc_ok.val() & self.check.stored_ok.val());
-        self.bad_now.next = self.crc_bad.val() | self.check.f1.val() | !self.check.f2.val();
-        self.is_bad.next = self.bad_now.val();
+        self.bad_crc.next = !(self.check.crc_ok.val() & self.check.stored_ok.val());
+        self.crc_bad.d.next = self.bad_crc.val();
+        self.answer_bad.d.next = self.bad_crc.val() | self.check.f1.val() | !self.check.f2.val();
+        self.is_bad.next = self.answer_bad.q.val();
         self.is_pending.next = self.pending.q.val() | self.taken_now.q.val();
-        self.proven.next = self.prove.val() & self.is_pending.val();
+        // A frame that is given up has that as its one result.
+        self.prove_seen.d.next =
+            self.prove.val() & self.is_pending.val() & !self.gave_up_now.q.val();
+        self.proven.next = self.prove_seen.q.val() & self.pending.q.val() & !self.gave_up_now.q.val();
         self.found_all.next = self.seen.q.val();
         if self.proven.val() | (self.is_pending.val() & self.gave_up_now.q.val()) {
-            if self.crc_bad.val() {
+            if self.crc_bad.q.val() {
                 self.found_all.next = self.found_all.val() | self.crc_wrong.val();
                 if self.has_diagnosis.val() & self.check.is_echo.val() {
                     self.found_all.next =
@@ -206,12 +222,12 @@ impl Logic for Verdict {
             }
         }
         if self.taken_now.q.val() {
-            self.was_bad.d.next = self.crc_bad.val();
+            self.was_bad.d.next = self.crc_bad.q.val();
         }
-        self.upset.next = self.proven.val() & !self.bad_now.val() & self.settings_upset.val();
+        self.upset.next = self.proven.val() & !self.answer_bad.q.val() & self.settings_upset.val();
         self.measured.next = self.proven.val()
             & self.is_measuring.val()
-            & !self.bad_now.val()
+            & !self.answer_bad.q.val()
             & !self.upset.val()
             & !self.is_own.val();
         // A frame is not given up for nothing: a register that says so was upset.
@@ -231,6 +247,7 @@ impl Logic for Verdict {
         self.early.next = self.has_diagnosis.val()
             & self.ended.q.val()
             & !self.is_going.val()
+            & !self.proven.val()
             & !self.chooser.cause.val().any()
             & (self.recovery_cycles.val() < self.recovery_min.val());
         if self.early.val() {
@@ -251,22 +268,23 @@ impl Logic for Verdict {
                 self.overrun.d.next = false;
             }
         }
-        if self.lost.val() {
+        self.lost_now.d.next = self.lost.val();
+        if self.lost_now.q.val() {
             self.overrun.d.next = true;
         }
-        self.lost_now.d.next = self.lost.val();
-        self.once_more_now.d.next = self.measured.val();
         if self.measured.val() {
             self.is_silent.d.next = true;
         }
         if self.answer_taken.val() {
             self.is_silent.d.next = false;
         }
-        self.publish_now.d.next = ((self.proven.val() & !self.measured.val())
+        self.publishes_now.next = ((self.proven.val() & !self.measured.val())
             | self.refused.q.val()
             | self.announced.q.val()
             | (self.gave_up_now.q.val() & !self.gave_up_late.q.val()))
             & !self.is_own.val();
+        self.publish_now.d.next = self.publishes_now.val();
+        self.publishes.next = self.publishes_now.val();
         if self.taken_now.q.val() {
             self.pending.d.next = true;
         }
@@ -278,9 +296,9 @@ impl Logic for Verdict {
             & !self.is_own.val();
         self.withdraw_now.d.next = self.gave_up_late.q.val() & !self.is_own.val();
         self.confirm_now.d.next = self.ended.q.val() & !self.is_own.val();
-        self.is_received.next = self.taken_now.q.val() & !self.crc_bad.val();
-        self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.val() & self.was_bad.q.val();
-        self.good_now.d.next = self.proven.val() & !self.bad_now.val() & !self.upset.val();
+        self.is_received.next = self.taken_now.q.val() & !self.crc_bad.q.val();
+        self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.q.val() & self.was_bad.q.val();
+        self.good_now.d.next = self.proven.val() & !self.answer_bad.q.val() & !self.upset.val();
         // `over` comes with cause and flags of whatever ended the frame.
         self.over_now.d.next = self.ended.q.val() | self.gave_up_now.q.val() | self.refused.q.val();
 
@@ -292,7 +310,7 @@ impl Logic for Verdict {
             | self.over_now.q.val();
         self.told.publish.next = self.publish_now.q.val();
         self.told.good.next = self.good_now.q.val();
-        self.once_more.next = self.once_more_now.q.val();
+        self.once_more.next = self.measured.val();
         self.told.late_fault.next = self.late_now.q.val();
         self.told.withdraw.next = self.withdraw_now.q.val();
         self.told.confirm.next = self.confirm_now.q.val();

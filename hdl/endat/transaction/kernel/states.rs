@@ -6,7 +6,7 @@ use rtl_design::kernel_parts;
 impl Transaction {
     /// DATA is not LOW yet, or not for long enough.
     fn await_low(&mut self) {
-        self.limit.next = self.ready_low_cycles.val();
+        self.limit.next = self.ready_low_cycles.val() - 1;
         self.timer_clear.next = self.level.val();
         self.idle.next = self.level.val() & !(self.next_frame.hold_off.val() & self.has_all.val());
         if self.timer_hit.q.val() {
@@ -152,7 +152,7 @@ impl Transaction {
         self.watched.next = true;
         // No bit follows the answer here.
         self.proof.next = self.verdict.taken.val();
-        self.limit.next = self.park_cycles.val();
+        self.limit.next = self.park_cycles.val() - 1;
         if self.timer_hit.q.val() {
             self.phase.d.next = Phase::Frame;
             self.timer_clear.next = true;
