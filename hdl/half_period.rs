@@ -40,6 +40,8 @@ pub struct HalfPeriod {
     #[start(2.into())]
     count: Reg<Bits<10>>,
     hit: Reg<Bit>,
+    /// The period has an odd number of cycles.
+    is_odd: Reg<Bit>,
     hit_late: Reg<Bit>,
     half_cycles: Signal<Local, Bits<10>>,
     tick_now: Signal<Local, Bit>,
@@ -63,7 +65,9 @@ impl Logic for HalfPeriod {
     fn update(&mut self) {
         self.half_cycles.next = self.period_cycles.val().get_bits::<10>(1);
         self.tick_now.next = self.hit.q.val();
-        if self.second.val() & self.period_cycles.val().get_bit(0) {
+        // Registered, for the clock period may be chosen late.
+        self.is_odd.d.next = self.period_cycles.val().get_bit(0);
+        if self.second.val() & self.is_odd.q.val() {
             self.tick_now.next = self.hit_late.q.val();
         }
         self.is_one.next = self.has_one.val() & (self.half_cycles.val() == 1);

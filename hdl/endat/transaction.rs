@@ -175,6 +175,8 @@ pub struct Transaction {
     leaving: Reg<Bit>,
     #[start(true)]
     cleared: Reg<Bit>,
+    /// DATA was HIGH between two frames in the cycle before.
+    plugged: Reg<Bit>,
     /// The recovery time has begun in the cycle before.
     is_back: Reg<Bit>,
     /// A running clock has been left in the cycle before.
@@ -215,7 +217,6 @@ pub struct Transaction {
     lost: Signal<Local, Bit>,
     owed: Signal<Local, Bit>,
     proof: Signal<Local, Bit>,
-    plugged: Signal<Local, Bit>,
     vanished: Signal<Local, Bit>,
     afresh: Signal<Local, Bit>,
 }

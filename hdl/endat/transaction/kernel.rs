@@ -43,7 +43,7 @@ impl Logic for Transaction {
             | self.owed.val()
             | (self.next_frame.begin_own.val() & self.has_all.val());
         self.proof.next = false;
-        self.plugged.next = false;
+        self.plugged.d.next = false;
         self.refuse.next = false;
         self.normal_end.next = false;
         self.supplement_now.d.next = false;
@@ -276,12 +276,12 @@ impl Logic for Transaction {
         }
         // A cycle later: the first clock edge has not come by then.
         if self.start_now.q.val() {
-            self.measuring.d.next = !self.known.val();
+            self.measuring.d.next = self.slow_now.q.val();
             self.under_way.d.next = true;
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
-            self.acquiring.d.next =
-                !self.known.val() & !(self.has_alignment.val() & self.passes.q.val().any());
+            self.acquiring.d.next = self.slow_now.q.val()
+                & !(self.has_alignment.val() & self.passes.q.val().any());
             self.tail_sampled.d.next = false;
             self.late.d.next = false;
         }
@@ -320,7 +320,7 @@ impl Logic for Transaction {
         }
         // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
         self.afresh.next =
-            self.next_frame.calibrate.val() | self.plugged.val() | self.delay_upset.val();
+            self.next_frame.calibrate.val() | self.plugged.q.val() | self.delay_upset.val();
         if self.afresh.val() | (self.has_alignment.val() & self.is_fixed.val()) {
             self.is_calibrated.d.next = false;
         }

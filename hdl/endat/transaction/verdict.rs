@@ -101,10 +101,6 @@ pub struct Verdict {
     stored_upset: Constant<Bits<20>>,
     /// Flags that came with the last strobe.
     seen: Reg<Bits<20>>,
-    /// The CRC did not fit in the cycle before.
-    crc_bad: Reg<Bit>,
-    /// Nor did CRC, F1 and F2 together.
-    answer_bad: Reg<Bit>,
     /// High for one cycle after `prove`, unless the frame was given up.
     prove_seen: Reg<Bit>,
     taken_now: Reg<Bit>,
@@ -126,7 +122,8 @@ pub struct Verdict {
     lost_now: Reg<Bit>,
     flags_now: Reg<Bits<20>>,
     found_all: Signal<Local, Bits<20>>,
-    bad_crc: Signal<Local, Bit>,
+    crc_bad: Signal<Local, Bit>,
+    answer_bad: Signal<Local, Bit>,
     proven: Signal<Local, Bit>,
     publishes_now: Signal<Local, Bit>,
     upset: Signal<Local, Bit>,
@@ -193,10 +190,9 @@ impl Logic for Verdict {
 
         // Of what has been told: the choice is kept out of the path of what is found.
         self.chooser.flags.next = self.flags_now.q.val();
-        self.bad_crc.next = !(self.check.crc_ok.val() & self.check.stored_ok.val());
-        self.crc_bad.d.next = self.bad_crc.val();
-        self.answer_bad.d.next = self.bad_crc.val() | self.check.f1.val() | !self.check.f2.val();
-        self.is_bad.next = self.answer_bad.q.val();
+        self.crc_bad.next = !(self.check.crc_ok.val() & self.check.stored_ok.val());
+        self.answer_bad.next = self.crc_bad.val() | self.check.f1.val() | !self.check.f2.val();
+        self.is_bad.next = self.answer_bad.val();
         self.is_pending.next = self.pending.q.val() | self.taken_now.q.val();
         // A frame that is given up has that as its one result.
         self.prove_seen.d.next =
@@ -204,7 +200,7 @@ impl Logic for Verdict {
         self.proven.next = self.prove_seen.q.val() & self.pending.q.val() & !self.gave_up_now.q.val();
         self.found_all.next = self.seen.q.val();
         if self.proven.val() | (self.is_pending.val() & self.gave_up_now.q.val()) {
-            if self.crc_bad.q.val() {
+            if self.crc_bad.val() {
                 self.found_all.next = self.found_all.val() | self.crc_wrong.val();
                 if self.has_diagnosis.val() & self.check.is_echo.val() {
                     self.found_all.next =
@@ -222,12 +218,12 @@ impl Logic for Verdict {
             }
         }
         if self.taken_now.q.val() {
-            self.was_bad.d.next = self.crc_bad.q.val();
+            self.was_bad.d.next = self.crc_bad.val();
         }
-        self.upset.next = self.proven.val() & !self.answer_bad.q.val() & self.settings_upset.val();
+        self.upset.next = self.proven.val() & !self.answer_bad.val() & self.settings_upset.val();
         self.measured.next = self.proven.val()
             & self.is_measuring.val()
-            & !self.answer_bad.q.val()
+            & !self.answer_bad.val()
             & !self.upset.val()
             & !self.is_own.val();
         // A frame is not given up for nothing: a register that says so was upset.
@@ -296,9 +292,9 @@ impl Logic for Verdict {
             & !self.is_own.val();
         self.withdraw_now.d.next = self.gave_up_late.q.val() & !self.is_own.val();
         self.confirm_now.d.next = self.ended.q.val() & !self.is_own.val();
-        self.is_received.next = self.taken_now.q.val() & !self.crc_bad.q.val();
-        self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.q.val() & self.was_bad.q.val();
-        self.good_now.d.next = self.proven.val() & !self.answer_bad.q.val() & !self.upset.val();
+        self.is_received.next = self.taken_now.q.val() & !self.crc_bad.val();
+        self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.val() & self.was_bad.q.val();
+        self.good_now.d.next = self.proven.val() & !self.answer_bad.val() & !self.upset.val();
         // `over` comes with cause and flags of whatever ended the frame.
         self.over_now.d.next = self.ended.q.val() | self.gave_up_now.q.val() | self.refused.q.val();
 

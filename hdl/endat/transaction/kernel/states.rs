@@ -15,7 +15,7 @@ impl Transaction {
         if self.level.val() {
             self.phase.d.next = Phase::NotReady;
             // Longer than an edge rings.
-            self.plugged.next = self.high_at_tick.q.val() & self.tick_us.val();
+            self.plugged.d.next = self.high_at_tick.q.val() & self.tick_us.val();
             if self.triggered.val() | self.owed.val() {
                 self.found.next = self.not_low.val();
                 self.give_up.next = true;
@@ -35,7 +35,7 @@ impl Transaction {
             !(self.next_frame.hold_off.val() & self.has_all.val()) & !self.verdict.is_telling.val();
         if self.level.val() {
             self.phase.d.next = Phase::NotReady;
-            self.plugged.next = true;
+            self.plugged.d.next = true;
             if (self.triggered.val() | self.owed.val()) & !self.verdict.is_telling.val() {
                 self.found.next = self.not_low.val();
                 self.give_up.next = true;
