@@ -95,6 +95,8 @@ pub struct ChannelRegisters {
     stale_now: Signal<Local, Bit>,
     stale_shown: Reg<Bit>,
     age: Reg<Bits<16>>,
+    /// The age has reached its largest value.
+    age_full: Reg<Bit>,
     age_tick: Signal<Local, Bit>,
     age_now: Signal<Local, Bits<16>>,
     age_shown: Reg<Bits<16>>,
@@ -160,12 +162,15 @@ impl Logic for ChannelRegisters {
             self.trigger.val() | (self.behind.q.val() & !self.result.result_strobe.val());
         self.behind.d.next = self.behind_now.val();
         self.stale_now.next = self.stale.q.val() | self.trigger.val();
-        self.age_tick.next = self.tick_us.val() & !self.age.q.val().all();
+        self.age_tick.next = self.tick_us.val() & !self.age_full.q.val();
+        self.age_full.d.next = self.age.q.val().get_bits::<15>(1).all()
+            & (self.age.q.val().get_bit(0) | self.age_tick.val());
         self.age_now.next = self.age.q.val() + bit_cast::<16, 1>(self.age_tick.val().into());
         // Behind the adder: whether the result may be loaded is known late.
         if self.load.val() {
             self.stale_now.next = self.behind_now.val();
             self.age_now.next = self.result.age_us.val();
+            self.age_full.d.next = self.result.age_us.val().all();
         }
         self.stale.d.next = self.stale_now.val();
         self.age.d.next = self.age_now.val();

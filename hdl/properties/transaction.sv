@@ -18,7 +18,7 @@ wire f_taken = trigger & !lost;
 wire f_in_frame = (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_TAIL) | (phase == PHASE_RECOVERY) | (phase == PHASE_PARK);
 always @(posedge clock) begin
     f_lost <= lost & !reset;
-    f_tells <= !reset & (refuse | announce | (give_up & !aborts & !answered & !found_late));
+    f_tells <= !reset & (refuse | announce | (give_up & !aborts & !((answered & !verdict_once_more) | found_late)));
     f_owed <= !reset & (f_taken | (f_owed & !publish));
 end
 `ifndef FORMAL_ANY_STATE
@@ -30,12 +30,13 @@ always @* if (!HAS_ALL & !HAS_CONTINUOUS) begin
     one_result_per_trigger_at_rest: assert ((phase != PHASE_READY) | !f_owed | owed | f_tells | publish | give_up);
     one_result_per_trigger_lemma_rest: assert (f_in_frame | !(under_way | answered));
     one_result_per_trigger_lemma_frame: assert (!f_in_frame | owing | answered);
-    one_result_per_trigger_lemma_once: assert (!answered | !verdict_is_pending | aborts);
+    one_result_per_trigger_lemma_once: assert (!answered | !verdict_is_pending | verdict_publishes | verdict_once_more | aborts);
     one_result_per_trigger_lemma_where: assert (!answered | aborts | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
     one_result_per_trigger_lemma_tail: assert ((phase != PHASE_TAIL) | verdict_is_pending | aborts);
     one_result_per_trigger_lemma_sampled: assert (!tail_sampled | !f_in_frame | (phase == PHASE_RECOVERY));
     one_result_per_trigger_lemma_proved: assert ((phase != PHASE_RECOVERY) | aborts | !owing | (tail_sampled ? answered | once_more | verdict_once_more : verdict_is_pending));
-    one_result_per_trigger_lemma_told: assert (!answered | !owing | publish | verdict_once_more | f_tells | aborts);
+    one_result_per_trigger_lemma_told: assert (!answered | !owing | verdict_publishes | verdict_once_more | f_tells | aborts);
+    one_result_per_trigger_lemma_result: assert (!(verdict_publishes | verdict_once_more) | answered | f_tells | aborts);
     one_result_per_trigger_lemma_owing: assert (f_in_frame | !owing | once_more | aborts | publish);
     one_result_per_trigger_lemma_open: assert (f_owed == (owing | f_tells | publish));
 end
@@ -44,11 +45,13 @@ always @(posedge clock) if (f_past_valid & !$past(reset)) begin
 end
 always @* begin
     low_for_tr: assert ((phase != PHASE_READY) | (f_low_cycles >= READY_LOW_CYCLES));
-    low_for_tr_lemma_timer: assert ((phase != PHASE_NOT_READY) | (timer <= f_low_cycles));
-    low_for_tr_lemma_limit: assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES));
+    low_for_tr_lemma_timer: assert ((phase != PHASE_NOT_READY) | cleared | (timer < f_low_cycles) | (&f_low_cycles));
+    low_for_tr_lemma_start: assert (!start_now | (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_ABORT));
+    low_for_tr_lemma_back: assert (!is_back | (phase == PHASE_RECOVERY) | (phase == PHASE_ABORT));
+    low_for_tr_lemma_limit: assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES - 16'd1));
     low_for_tr_lemma_hit: assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
     abort_pause: assert (!f_quiet | aborts | (phase_next != PHASE_NOT_READY) | (f_quiet_us >= ABORT_US - 16'd3));
-    abort_pause_lemma_timer: assert (!f_quiet | ({1'b0, timer} + {16'd0, timer_step} <= {1'b0, f_quiet_us} + 17'd3));
+    abort_pause_lemma_timer: assert (!f_quiet | cleared | ({1'b0, timer} + {16'd0, timer_step} <= {1'b0, f_quiet_us} + 17'd3));
     abort_pause_lemma_limit: assert (!f_quiet | cleared | (timer_limit == ABORT_US));
     abort_pause_lemma_hit: assert (!f_quiet | !timer_hit | (f_quiet_us >= ABORT_US - 16'd3));
 end
@@ -71,7 +74,7 @@ endfunction
 // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
 wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
 wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
-wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
+wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !start_now;
 always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
     forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
     if ($past(aborts)) forward_only_abort: assert (phase == PHASE_ABORT);

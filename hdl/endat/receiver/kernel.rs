@@ -56,8 +56,9 @@ impl Logic for Receiver {
         if self.control.acquire.val() {
             self.skip_step.next = self.rise.val();
         }
+        // A sample comes two cycles after the one before at least: the state has been registered by then.
         self.start_sample.next =
-            (self.field.q.val() == Field::Start) & self.cells.sample.val() & self.level.val();
+            self.hunting_now.q.val() & self.cells.sample.val() & self.level.val();
         self.covered_bit.next = false;
         self.crc_bit.next = false;
         self.last_payload.d.next = false;
@@ -119,14 +120,7 @@ impl Logic for Receiver {
                     }
                 }
             }
-            Field::Start => {
-                if self.start_sample.val() & self.cells.edge_in_window.val() {
-                    self.field.d.next = Field::F1;
-                    if !self.shape.has_f1.val() & self.has_all.val() {
-                        self.field.d.next = Field::Payload;
-                    }
-                }
-            }
+            Field::Start => {}
             Field::F1 => {
                 if self.cells.sample.val() {
                     self.covered_bit.next = true;
@@ -216,6 +210,13 @@ impl Logic for Receiver {
             }
             _ => {
                 self.field.d.next = Field::Done;
+            }
+        }
+        // Not in its arm: the edge of the start bit is known last.
+        if self.start_sample.val() & self.cells.edge_in_window.val() {
+            self.field.d.next = Field::F1;
+            if !self.shape.has_f1.val() & self.has_all.val() {
+                self.field.d.next = Field::Payload;
             }
         }
     }

@@ -119,6 +119,8 @@ pub struct Verdict {
     confirm_now: Reg<Bit>,
     late_now: Reg<Bit>,
     over_now: Reg<Bit>,
+    /// High from the end of a frame until its cause and flags are valid.
+    telling: Reg<Bit>,
     lost_now: Reg<Bit>,
     flags_now: Reg<Bits<20>>,
     found_all: Signal<Local, Bits<20>>,
@@ -297,13 +299,16 @@ impl Logic for Verdict {
         self.good_now.d.next = self.proven.val() & !self.answer_bad.val() & !self.upset.val();
         // `over` comes with cause and flags of whatever ended the frame.
         self.over_now.d.next = self.ended.q.val() | self.gave_up_now.q.val() | self.refused.q.val();
+        self.telling.d.next = self.normal_end.val()
+            | self.give_up.val()
+            | self.refuse.val()
+            | self.ended.q.val()
+            | self.gave_up_now.q.val()
+            | self.refused.q.val();
 
         self.taken.next = self.taken_now.q.val();
         self.gave_up.next = self.gave_up_now.q.val();
-        self.is_telling.next = self.ended.q.val()
-            | self.gave_up_now.q.val()
-            | self.refused.q.val()
-            | self.over_now.q.val();
+        self.is_telling.next = self.telling.q.val();
         self.told.publish.next = self.publish_now.q.val();
         self.told.good.next = self.good_now.q.val();
         self.once_more.next = self.measured.val();
