@@ -93,14 +93,23 @@ pub struct EncoderPort {
     pub io_out: Vec<Signal<In, Bits<16>>>,
     /// Strobe: it is written to the port.
     pub io_write: Vec<Signal<In, Bit>>,
+    /// EnDat channel; none for another protocol.
     channel: Vec<Channel>,
+    /// T-format port, if the encoder speaks T-format.
     t_format: Vec<TFormatPort>,
+    /// SSI port, if the encoder speaks SSI.
     ssi: Vec<SsiPort>,
+    /// Connection of the channel to a service.
     served: Vec<ServiceChannel>,
+    /// The port's own service.
     service: Vec<Service>,
+    /// Line monitor.
     monitor: Vec<LineMonitor>,
+    /// Cause of a lost trigger; it comes with a good position.
     trigger_overrun: Constant<Bits<5>>,
+    /// Cause of missing additional data; it comes with a good position.
     info_missing: Constant<Bits<5>>,
+    /// Cause of a recovery time that was too short; it comes with a good position.
     recovery_too_short: Constant<Bits<5>>,
     _channels: usize,
     _t_formats: usize,
@@ -115,7 +124,9 @@ pub struct EncoderPort {
 /// The port of another protocol than EnDat, if it is one.
 #[derive(Default)]
 struct Others {
+    /// T-format port, if the encoder speaks T-format.
     t_format: Vec<TFormatPort>,
+    /// SSI port, if the encoder speaks SSI.
     ssi: Vec<SsiPort>,
 }
 

@@ -27,9 +27,12 @@ pub struct SureBit {
     pub clear: Signal<In, Bit>,
     /// It is set.
     pub is_set: Signal<Out, Bit>,
+    /// High while the bit is set.
     yes: Reg<Bit>,
+    /// Complement of `yes`; both alike mean an upset.
     #[start(true)]
     no: Reg<Bit>,
+    /// 1 if the complement is stored and compared.
     has_guards: Constant<Bit>,
 }
 

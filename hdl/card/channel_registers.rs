@@ -88,27 +88,46 @@ pub struct ChannelRegisters {
     pub field_gap_us: Signal<Out, Bits<3>>,
     /// The words of the result as they are now, for the second interface; none without one.
     pub live: Vec<Signal<Out, Bits<32>>>,
+    /// High from a trigger that the channel takes until the result of that trigger.
     waiting: Reg<Bit>,
+    /// High if a trigger has come since the last result.
     behind: Reg<Bit>,
+    /// `behind`, with the trigger or result of this cycle.
     behind_now: Signal<Local, Bit>,
+    /// High if a trigger has come since the trigger of the held result.
     stale: Reg<Bit>,
+    /// `stale`, with the trigger or load of this cycle.
     stale_now: Signal<Local, Bit>,
+    /// `stale` as the host reads it; frozen while a word is read.
     stale_shown: Reg<Bit>,
+    /// Age of the held position in microseconds, up to 65535; loaded with the held words.
     age: Reg<Bits<16>>,
+    /// Age before the tick of this cycle.
     age_base: Signal<Local, Bits<16>>,
+    /// High if the age rises by one in this cycle.
     age_tick: Signal<Local, Bit>,
+    /// Age with the tick or load of this cycle.
     age_now: Signal<Local, Bits<16>>,
+    /// Age as the host reads it; frozen while a word is read.
     age_shown: Reg<Bits<16>>,
+    /// Words of the result that the host reads; loaded together for all channels.
     held: Vec<Reg<Bits<32>>>,
+    /// Words of the result as the channel gives it now.
     word: Vec<Signal<Local, Bits<32>>>,
+    /// Held words, with age and `stale`.
     shown: Vec<Signal<Local, Bits<32>>>,
+    /// Selected byte of each held word; 0 for words that are not read.
     byte: Vec<Reg<Bits<8>>>,
+    /// OR of these bytes; 0 while this channel is not read.
     read_byte: Reg<Bits<8>>,
     ring: ConfigRing,
+    /// Configuration word 0 in use: clock and frame; copied from the ring while the channel is idle.
     #[given]
     config0: Reg<Bits<32>>,
+    /// Configuration word 1 in use: timing; copied from the ring while the channel is idle.
     #[given]
     config1: Reg<Bits<32>>,
+    /// Configuration word 2 in use: limits; copied from the ring while the channel is idle.
     #[given]
     config2: Reg<Bits<32>>,
     _words: usize,

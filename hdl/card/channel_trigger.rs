@@ -38,15 +38,22 @@ pub struct ChannelTrigger {
     pub trigger: Signal<Out, Bit>,
     /// The channel takes no trigger.
     pub disabled: Signal<Out, Bit>,
+    /// Sources that do not trigger this channel; copied from the ring while it stands still.
     #[given]
     ignored: Reg<Bits<3>>,
+    /// Triggers left out after each one taken; copied from the ring while it stands still.
     #[given]
     skipped: Reg<Bits<5>>,
+    /// High if the channel takes no trigger; copied from the ring while it stands still.
     #[given]
     is_off: Reg<Bit>,
+    /// Triggers still to be left out; cleared by `restart`.
     left: Reg<Bits<5>>,
+    /// High for one cycle when the channel triggers.
     strobe: Reg<Bit>,
+    /// High if a source that counts for this channel has a hit.
     own: Signal<Local, Bit>,
+    /// High if no trigger is to be left out.
     is_due: Signal<Local, Bit>,
 }
 

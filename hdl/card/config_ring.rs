@@ -43,15 +43,21 @@ pub struct ConfigRing {
     pub word2: Signal<Out, Bits<32>>,
     /// The words are not what was written, as of the last cycle in which the ring stood still.
     pub is_damaged: Signal<Out, Bit>,
+    /// Word 0 while the ring stands still; its top byte leaves first.
     #[given]
     w0: Reg<Bits<32>>,
+    /// Word 1 while the ring stands still.
     #[given]
     w1: Reg<Bits<32>>,
+    /// Word 2 while the ring stands still; bytes enter at its low end.
     #[given]
     w2: Reg<Bits<32>>,
+    /// Parity of each of the twelve bytes, in the same order; 0 without guards.
     #[given]
     parities: Reg<Bits<12>>,
+    /// High if the words differ from their parities; computed while the ring stands still.
     damaged: Reg<Bit>,
+    /// 1 if each byte has a parity.
     has_guards: Constant<Bit>,
 }
 

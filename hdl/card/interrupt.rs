@@ -42,21 +42,35 @@ pub struct Interrupt {
     pub read_byte: Signal<Out, Bits<8>>,
     /// An event that the mask lets through has not been cleared.
     pub irq: Signal<Out, Bit>,
+    /// Events that have not been cleared, 4 bits per channel; set by an event, cleared by the host.
     status: Reg<Bits<32>>,
+    /// Events that interrupt; written by the host.
     mask: Reg<Bits<32>>,
+    /// High while an event that the mask lets through is set.
     wants: Reg<Bit>,
+    /// Byte that the host reads; 0 if the word is not one of these.
     byte_read: Reg<Bits<8>>,
+    /// `result` of the cycle before, per channel.
     had_result: Vec<Reg<Bit>>,
+    /// `error` of the cycle before, per channel.
     had_error: Vec<Reg<Bit>>,
+    /// `alarm` of the cycle before, per channel.
     had_alarm: Vec<Reg<Bit>>,
-    /// From the last channel down: 4 bits each, the lowest channel's lowest.
+    /// Events of this cycle, from the last channel down: 4 bits each, the lowest channel's lowest.
     events: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 0 of a channel's events: a new result.
     one: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 1: a result that is an error, or became one.
     two: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 2: the alarm has come on.
     four: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 3: the frame of a request has ended.
     eight: Vec<Signal<Local, Bits<32>>>,
+    /// High if the address is one of these words.
     selected: Signal<Local, Bit>,
+    /// Word that the address selects.
     word: Signal<Local, Bits<32>>,
+    /// Address of the first word, divided by 4.
     words: Constant<Bits<9>>,
     _channels: usize,
     _links: usize,

@@ -35,22 +35,35 @@ pub struct RecoveryCounter {
     pub lane: Signal<In, Bits<2>>,
     /// Byte of the word, a cycle after its address; 0 if it is none of this channel's.
     pub read_byte: Signal<Out, Bits<8>>,
+    /// Counts system clock cycles from reset on, and wraps; each channel starts at another value.
     #[given]
     counter: Reg<Bits<16>>,
+    /// Counter at the last rising edge of CLOCK.
     rise: Reg<Bits<16>>,
+    /// Counter at the last falling edge of DATA.
     fall: Reg<Bits<16>>,
+    /// High if DATA has fallen since the last rising edge of CLOCK.
     fallen: Reg<Bit>,
-    // CLOCK rests HIGH.
+    /// CLOCK of the cycle before; HIGH at rest.
     #[start(true)]
     clk_before: Reg<Bit>,
+    /// DATA, first synchroniser stage.
     sampled: SyncReg<Bit>,
+    /// DATA, second synchroniser stage.
     level: SyncReg<Bit>,
+    /// DATA one cycle before `level`.
     level_before: Reg<Bit>,
+    /// Low three bytes of the word that is read, as of the read of its first byte.
     held: Reg<Bits<24>>,
+    /// Byte that is read; 0 if the word is none of this channel's.
     byte_read: Reg<Bits<8>>,
+    /// High if DATA has fallen since the last rising edge of CLOCK and is LOW.
     is_over: Signal<Local, Bit>,
+    /// High if the address is one of this channel's words.
     selected: Signal<Local, Bit>,
+    /// Word that the address selects.
     word: Signal<Local, Bits<32>>,
+    /// Address of the two words, divided by 2.
     pair: Constant<Bits<10>>,
 }
 

@@ -16,7 +16,7 @@ always @* begin
     one_set_per_trigger_open: assert (f_owed == open);
 end
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-    if ($past(!buffer_idle)) set_of_one_moment: assert ($stable({sequence_taken, moment_taken, lost_taken}));
+    if ($past(!buffer_idle)) set_of_one_moment: assert ($stable({sequence_taken, time_taken, lost_taken}));
     if ($past(lost_now & !clear & !(&lost_all))) lost_counted: assert (lost_all == $past(lost_all) + 16'd1);
     if ($past(!lost_before_reset)) lost_counted_before: assert ((lost_before >= $past(lost_before)) & (!$past(lost_now & (lost_before != 8'hff)) | (lost_before == $past(lost_before) + 8'd1)));
     if (f_same & $past(!buffer_idle)) set_of_one_moment_bytes: assert ($stable(head_byte));

@@ -102,70 +102,109 @@ module s6_two_channel_channel_registers (
     // Data must fall within this many system clock cycles after the frame.
     output wire  [12:0] recovery_limit_cycles
 );
+    // behind, with the trigger or result of this cycle.
     wire         behind_now;
+    // stale, with the trigger or load of this cycle.
     reg          stale_now;
+    // Age before the tick of this cycle.
     reg   [15:0] age_base;
+    // High if the age rises by one in this cycle.
     reg          age_tick;
+    // Age with the tick or load of this cycle.
     wire  [15:0] age_now;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_0;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_1;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_2;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_3;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_4;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_5;
+    // Held words, with age and stale.
     wire  [31:0] shown_0;
+    // Held words, with age and stale.
     wire  [31:0] shown_1;
+    // Held words, with age and stale.
     wire  [31:0] shown_2;
+    // Held words, with age and stale.
     wire  [31:0] shown_3;
+    // Held words, with age and stale.
     wire  [31:0] shown_4;
+    // Held words, with age and stale.
     wire  [31:0] shown_5;
+    // High from a trigger that the channel takes until the result of that trigger.
     reg          waiting; initial waiting = 1'b0;
     reg          waiting_next;
+    // High if a trigger has come since the last result.
     reg          behind; initial behind = 1'b0;
+    // High if a trigger has come since the trigger of the held result.
     reg          stale; initial stale = 1'b0;
+    // stale as the host reads it; frozen while a word is read.
     reg          stale_shown; initial stale_shown = 1'b0;
     reg          stale_shown_next;
+    // Age of the held position in microseconds, up to 65535; loaded with the held words.
     reg   [15:0] age; initial age = 16'd0;
+    // Age as the host reads it; frozen while a word is read.
     reg   [15:0] age_shown; initial age_shown = 16'd0;
     reg   [15:0] age_shown_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_0; initial held_0 = 32'd0;
     reg   [31:0] held_0_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_1; initial held_1 = 32'd0;
     reg   [31:0] held_1_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_2; initial held_2 = 32'd0;
     reg   [31:0] held_2_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_3; initial held_3 = 32'd0;
     reg   [31:0] held_3_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_4; initial held_4 = 32'd0;
     reg   [31:0] held_4_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_5; initial held_5 = 32'd0;
     reg   [31:0] held_5_next;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_0; initial byte_0 = 8'd0;
     reg    [7:0] byte_0_next;
     wire         byte_0_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_1; initial byte_1 = 8'd0;
     reg    [7:0] byte_1_next;
     wire         byte_1_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_2; initial byte_2 = 8'd0;
     reg    [7:0] byte_2_next;
     wire         byte_2_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_3; initial byte_3 = 8'd0;
     reg    [7:0] byte_3_next;
     wire         byte_3_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_4; initial byte_4 = 8'd0;
     reg    [7:0] byte_4_next;
     wire         byte_4_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_5; initial byte_5 = 8'd0;
     reg    [7:0] byte_5_next;
     wire         byte_5_reset;
+    // OR of these bytes; 0 while this channel is not read.
     reg    [7:0] read_byte; initial read_byte = 8'd0;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
+    // Configuration word 0 in use: clock and frame; copied from the ring while the channel is idle.
     reg   [31:0] config0; initial config0 = 32'h381d0020;
     reg   [31:0] config0_next;
+    // Configuration word 1 in use: timing; copied from the ring while the channel is idle.
     reg   [31:0] config1; initial config1 = 32'h20800b8;
     reg   [31:0] config1_next;
+    // Configuration word 2 in use: limits; copied from the ring while the channel is idle.
     reg   [31:0] config2; initial config2 = 32'hc501012;
     reg   [31:0] config2_next;
 

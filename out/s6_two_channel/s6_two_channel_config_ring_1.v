@@ -30,10 +30,13 @@ module s6_two_channel_config_ring_1 (
     // Word 2, while the ring stands still.
     output wire  [31:0] word2
 );
+    // Word 0 while the ring stands still; its top byte leaves first.
     reg   [31:0] w0; initial w0 = 32'd3;
     reg   [31:0] w0_next;
+    // Word 1 while the ring stands still.
     reg   [31:0] w1; initial w1 = 32'h2710;
     reg   [31:0] w1_next;
+    // Word 2 while the ring stands still; bytes enter at its low end.
     reg   [31:0] w2; initial w2 = 32'd0;
     reg   [31:0] w2_next;
     wire         _unused_ok = &{1'b0, byte_in[8]};

@@ -53,15 +53,24 @@ pub struct AhbLiteFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// High from the address phase of a transfer until its word access has ended.
     busy: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// High in the first cycle of an error response.
     refused: Reg<Bit>,
+    /// High in the second cycle of an error response.
     refused_still: Reg<Bit>,
+    /// Word address of the transfer.
     address: Reg<Bits<11>>,
+    /// High if the transfer is a write.
     writing: Reg<Bit>,
+    /// High for one cycle when an address phase is taken.
     start: Signal<Local, Bit>,
+    /// High if the transfer is an aligned word.
     is_word: Signal<Local, Bit>,
 }
 

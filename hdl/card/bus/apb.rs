@@ -48,17 +48,28 @@ pub struct ApbFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// High from the start of a transfer until its word access has ended.
     busy: Reg<Bit>,
+    /// High for one cycle when the transfer ends.
     ready: Reg<Bit>,
+    /// High with `ready` if the address was not a multiple of 4.
     error: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// High if the master has left the transfer before its end; cleared by the next transfer.
     abandoned: Reg<Bit>,
+    /// Word address of the transfer.
     address: Reg<Bits<11>>,
+    /// High if the transfer is a write.
     writing: Reg<Bit>,
+    /// High for one cycle when a transfer is taken.
     start: Signal<Local, Bit>,
+    /// High while the master selects this slave and enables the transfer.
     enabled: Signal<Local, Bit>,
+    /// High if the address is not a multiple of 4.
     misaligned: Signal<Local, Bit>,
 }
 

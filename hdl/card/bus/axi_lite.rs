@@ -68,26 +68,46 @@ pub struct AxiLiteFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// High while a write address waits for its access.
     has_aw: Reg<Bit>,
+    /// Word address of the waiting write.
     write_address: Reg<Bits<11>>,
+    /// High while a word to write waits for its access.
     has_w: Reg<Bit>,
+    /// Word to write.
     data: Reg<Bits<32>>,
+    /// Byte strobes of the waiting write.
     strobes: Reg<Bits<4>>,
+    /// High while a read address waits for its access.
     has_ar: Reg<Bit>,
+    /// Word address of the waiting read.
     read_address: Reg<Bits<11>>,
+    /// High while a write response waits for the master.
     has_b: Reg<Bit>,
+    /// High if the last write selected a part of a word.
     error: Reg<Bit>,
+    /// High while a word that was read waits for the master.
     has_r: Reg<Bit>,
+    /// Word that was read.
     answer: Reg<Bits<32>>,
+    /// High while a word access runs.
     busy: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// Word address of the access.
     address: Reg<Bits<11>>,
+    /// High if the access, or the last one, is a write.
     writing: Reg<Bit>,
+    /// High if a write has all it needs, and its response has room.
     may_write: Signal<Local, Bit>,
+    /// High if a read has all it needs, and its word has room.
     may_read: Signal<Local, Bit>,
+    /// High for one cycle when a write is taken.
     goes_write: Signal<Local, Bit>,
+    /// High for one cycle when a read is taken.
     goes_read: Signal<Local, Bit>,
 }
 

@@ -52,37 +52,67 @@ pub struct ParallelFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// Strobes of the bus, in the system clock domain.
     #[start]
     strobes: BusStrobes,
+    /// Data at the pins; held while the same register is read.
     out_data: Reg<Bits<16>>,
+    /// `is_first` of the cycle before.
     was_first: Reg<Bit>,
+    /// Status word of the result that is being read.
     next_status: Reg<Bits<32>>,
+    /// Low position word of the result that is being read.
     next_low: Reg<Bits<32>>,
+    /// Status word of the last complete result.
     live_status: Reg<Bits<32>>,
+    /// Position of the last complete result.
     live_position: Reg<Bits<48>>,
+    /// Status word that registers 3 and 4 show; latched by a read of register 0.
     seen_status: Reg<Bits<32>>,
+    /// Position that registers 0 to 2 show; latched by a read of register 0.
     seen_position: Reg<Bits<48>>,
+    /// Word address of the window, registers 6 and 7.
     window_address: Reg<Bits<11>>,
+    /// Channel of registers 0 to 4.
     channel: Reg<Bits<3>>,
+    /// Low half of the window's word.
     window_low: Reg<Bits<16>>,
+    /// High half of the window's word.
     window_high: Reg<Bits<16>>,
+    /// High from a write of register 5 until the word of the window has been read.
     wants_read: Reg<Bit>,
+    /// High from a write of register 7 until the word of the window has been written.
     wants_write: Reg<Bit>,
+    /// High from a change of the channel until its result has been read.
     settling: Reg<Bit>,
+    /// High while a word access runs.
     busy: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// Word address of the access.
     address: Reg<Bits<11>>,
+    /// High if the access is a write.
     writing: Reg<Bit>,
+    /// High if the access is one of the window.
     is_window: Reg<Bit>,
+    /// Word of the result that is read next, 0 to 2.
     step: Reg<Bits<2>>,
+    /// Channel whose result is being read.
     polled: Reg<Bits<3>>,
+    /// High if a register was being read in the cycle before.
     was_read: Reg<Bit>,
+    /// Register that was selected in the cycle before.
     last_register: Reg<Bits<3>>,
+    /// High if the same register has been read for two cycles.
     is_steady: Reg<Bit>,
+    /// High while a register is read that was read in the cycle before, too.
     is_same: Signal<Local, Bit>,
+    /// High while register 0 is read.
     is_first: Signal<Local, Bit>,
+    /// High while an access of the window or a change of the channel is not finished.
     is_busy: Signal<Local, Bit>,
 }
 

@@ -65,51 +65,94 @@ pub struct SpiFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// Serial clock, first synchroniser stage.
     sck_0: SyncReg<Bit>,
+    /// Serial clock, second synchroniser stage.
     sck_1: SyncReg<Bit>,
+    /// Serial clock one cycle before `sck_1`, to find its edges.
     sck_2: Reg<Bit>,
+    /// Chip select, active high, first synchroniser stage.
     cs_0: SyncReg<Bit>,
+    /// Chip select, second synchroniser stage.
     cs_1: SyncReg<Bit>,
+    /// Data from the host, first synchroniser stage.
     mosi_0: SyncReg<Bit>,
+    /// Data from the host, second synchroniser stage.
     mosi_1: SyncReg<Bit>,
+    /// Meaning of the byte.
     #[start(SpiState::Command)]
     state: Reg<SpiState>,
+    /// Bits of the byte that have been taken.
     bit_count: Reg<Bits<3>>,
+    /// Last eight bits from the host.
     byte_in: Reg<Bits<8>>,
+    /// High for one cycle when a byte is complete.
     byte_end: Reg<Bit>,
+    /// Byte of the word or check sum.
     byte_count: Reg<Bits<2>>,
+    /// CRC of the frame so far; in a write since the last word that was accepted.
     #[start(0xffffu64.into())]
     crc: Reg<Bits<16>>,
+    /// Bits still to be sent, the one on the line at the top.
     shift_out: Reg<Bits<32>>,
+    /// High until the next falling edge loads a word that was read.
     load_word: Reg<Bit>,
+    /// High until the next falling edge loads the check sum.
     load_crc: Reg<Bit>,
+    /// High if a word was not ready in time: the check sum of the frame is sent wrong.
     late: Reg<Bit>,
+    /// High if the frame is a write.
     writing: Reg<Bit>,
+    /// Words of the frame that are left.
     words_left: Reg<Bits<8>>,
+    /// Word address of the next access.
     address: Reg<Bits<11>>,
+    /// High if that address is beyond the map.
     out_of_range: Reg<Bit>,
+    /// Word to write.
     data: Reg<Bits<32>>,
+    /// High while an access waits for the one before.
     asked: Reg<Bit>,
+    /// High while an access runs.
     busy: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// Word address of the access.
     access_address: Reg<Bits<11>>,
+    /// High if the address of the access is beyond the map.
     access_outside: Reg<Bit>,
+    /// High if the access is a write.
     access_writes: Reg<Bit>,
+    /// High if the last word to write was refused: wrong check sum, or an access was still running.
     refused: Reg<Bit>,
+    /// High while the host selects this slave.
     selected: Signal<Local, Bit>,
+    /// High for one cycle at a rising edge of the serial clock.
     rise: Signal<Local, Bit>,
+    /// High for one cycle at a falling edge of the serial clock.
     fall: Signal<Local, Bit>,
+    /// Bit that enters the CRC.
     crc_bit: Signal<Local, Bit>,
+    /// High while bits enter the CRC.
     crc_runs: Signal<Local, Bit>,
+    /// High for one cycle when the address moves on.
     step_address: Signal<Local, Bit>,
+    /// High while an access waits or runs.
     waits: Signal<Local, Bit>,
+    /// Following address, with carry.
     next_address: Signal<Local, Bits<12>>,
+    /// High if one word is left.
     last_word: Signal<Local, Bit>,
+    /// Check sum that is sent: inverted if a word was late.
     crc_sent: Signal<Local, Bits<16>>,
+    /// Generator of the CRC, without x^16.
     polynomial: Constant<Bits<16>>,
+    /// First word of an answer if the last write was accepted.
     accepted_word: Constant<Bits<32>>,
+    /// First word of an answer if the last write was refused.
     refused_word: Constant<Bits<32>>,
 }
 

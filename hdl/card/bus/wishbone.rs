@@ -49,17 +49,28 @@ pub struct WishboneFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// High from the start of a transfer until its word access has ended.
     busy: Reg<Bit>,
+    /// High for one cycle when the transfer has been carried out.
     acknowledge: Reg<Bit>,
+    /// High for one cycle when the transfer is refused.
     error: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// High if the master has left the transfer before its end; cleared by the next transfer.
     abandoned: Reg<Bit>,
+    /// Word address of the transfer.
     address: Reg<Bits<11>>,
+    /// High if the transfer is a write.
     writing: Reg<Bit>,
+    /// High while the master asks for a transfer.
     asks: Signal<Local, Bit>,
+    /// High for one cycle when a transfer is taken.
     start: Signal<Local, Bit>,
+    /// High if the transfer writes a part of a word.
     refused: Signal<Local, Bit>,
 }
 

@@ -51,17 +51,29 @@ pub struct WordAccess {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Word: bytes to write leave at the top, bytes that were read enter at the bottom.
     data: Reg<Bits<32>>,
+    /// Byte that is read, 0 = most significant.
     byte_lane: Reg<Bits<2>>,
-    access_now: Reg<Bit>,
-    end_now: Reg<Bit>,
+    /// High for one cycle when an access of the register bank begins.
+    access_strobe: Reg<Bit>,
+    /// High for one cycle when the word is complete.
+    end_strobe: Reg<Bit>,
+    /// High if one access does the whole word: a write, or a configuration word.
     whole: Reg<Bit>,
+    /// Cycles until the first byte of a new snapshot is read; 0 = none.
     settle: Reg<Bits<2>>,
+    /// High while results are held for reads that belong together.
     holding: Reg<Bit>,
+    /// Low address bits of the last result word read.
     last_read: Reg<Bits<7>>,
+    /// Microseconds since the last read of a result word; 8 ends the snapshot.
     quiet_us: Reg<Bits<4>>,
+    /// High if a word of a result is read.
     is_result: Signal<Local, Bit>,
+    /// High if the address is a configuration word.
     is_config: Signal<Local, Bit>,
+    /// High if the word belongs to the snapshot that is held: its address is above the last one.
     goes_on: Signal<Local, Bit>,
 }
 
@@ -75,8 +87,8 @@ impl Logic for WordAccess {
             & (self.address_in.val().get_bits::<7>(0) > self.last_read.q.val());
 
         // A moment: `reading` falls for two cycles, in which the held words take over what is there.
-        self.access_now.d.next = false;
-        self.end_now.d.next = false;
+        self.access_strobe.d.next = false;
+        self.end_strobe.d.next = false;
         if self.settle.q.val().any() {
             self.settle.d.next = self.settle.q.val() - 1;
         }
@@ -84,7 +96,7 @@ impl Logic for WordAccess {
             self.holding.d.next = true;
         }
         if self.settle.q.val() == 1 {
-            self.access_now.d.next = true;
+            self.access_strobe.d.next = true;
         }
         if self.tick_us.val() {
             self.quiet_us.d.next = self.quiet_us.q.val() + 1;
@@ -106,14 +118,14 @@ impl Logic for WordAccess {
             }
             self.byte_lane.d.next = 0.into();
             self.whole.d.next = self.write_in.val() | self.is_config.val();
-            self.access_now.d.next = true;
+            self.access_strobe.d.next = true;
             if self.is_result.val() {
                 self.quiet_us.d.next = 0.into();
                 self.last_read.d.next = self.address_in.val().get_bits::<7>(0);
                 self.holding.d.next = self.goes_on.val();
                 if !self.goes_on.val() {
                     self.settle.d.next = 3.into();
-                    self.access_now.d.next = false;
+                    self.access_strobe.d.next = false;
                 }
             }
         }
@@ -123,23 +135,23 @@ impl Logic for WordAccess {
         }
         if self.bank.done.val() {
             if self.whole.q.val() {
-                self.end_now.d.next = true;
+                self.end_strobe.d.next = true;
             } else {
                 self.data.d.next =
                     (self.data.q.val() << 8) | bit_cast::<32, 8>(self.bank.read_byte.val());
                 self.byte_lane.d.next = self.byte_lane.q.val() + 1;
-                self.access_now.d.next = !self.byte_lane.q.val().all();
-                self.end_now.d.next = self.byte_lane.q.val().all();
+                self.access_strobe.d.next = !self.byte_lane.q.val().all();
+                self.end_strobe.d.next = self.byte_lane.q.val().all();
             }
         }
 
-        self.finished.next = self.end_now.q.val();
+        self.finished.next = self.end_strobe.q.val();
         self.read_data.next = self.data.q.val();
         self.bank.word_address.next = self.address_in.val();
         self.bank.in_range.next = true;
         self.bank.write.next = self.write_in.val();
         self.bank.lane.next = self.byte_lane.q.val();
-        self.bank.access.next = self.access_now.q.val();
+        self.bank.access.next = self.access_strobe.q.val();
         self.bank.write_data.next = self.data.q.val();
         self.bank.reading.next = self.holding.q.val();
     }

@@ -32,8 +32,11 @@ pub struct SecondRecord {
     pub word_in: Signal<In, Bits<32>>,
     /// The same, or this channel's word.
     pub word: Signal<Out, Bits<32>>,
+    /// Words of the record, as of the beginning of the answer.
     held: Vec<Reg<Bits<32>>>,
+    /// Number of this channel.
     number: Constant<Bits<4>>,
+    /// Word of this channel that is asked for.
     own: Signal<Local, Bits<32>>,
     _words: usize,
 }

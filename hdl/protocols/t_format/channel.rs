@@ -51,10 +51,14 @@ pub struct TFormatChannel {
     /// What stands at the outputs of a receiver without registers.
     #[bundle]
     pub reading: ReadingOut,
+    /// Synchroniser and filter of the line.
     filter: InputFilter,
+    /// Request and reply.
     exchange: Exchange,
+    /// Fields of the reply while they come.
     #[start]
     reply: Reply,
+    /// Result registers.
     outcome: Outcome,
 }
 

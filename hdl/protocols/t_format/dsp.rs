@@ -108,42 +108,65 @@ pub struct AsyncDsp {
     pub encoder_data_i: Signal<In, Bit>,
     /// The last reply was good.
     pub led_o: Signal<Out, Bit>,
+    /// Strobes of the bus, in the system clock domain.
     #[start]
     strobes: BusStrobes,
+    /// Synchroniser and filter of the line.
     filter: InputFilter,
+    /// Request and reply.
     exchange: Exchange,
+    /// Fields of the reply while they come.
     #[start]
     reply: ReplyBytes,
+    /// Words of the results.
     moments: Moments,
+    /// Clock strap, first synchroniser stage.
     select_0: SyncReg<Bit>,
+    /// Clock strap, second synchroniser stage.
     select_1: SyncReg<Bit>,
-    // HIGH, so that a pin that is high at power-up is not an edge.
+    /// Trigger pin, first synchroniser stage; starts HIGH, so that a pin HIGH at power-up is not an edge.
     #[start(true)]
     trigger_0: SyncReg<Bit>,
+    /// Trigger pin, second synchroniser stage.
     #[start(true)]
     trigger_1: SyncReg<Bit>,
+    /// Trigger pin one cycle before `trigger_1`, to find the edge.
     #[start(true)]
     trigger_2: SyncReg<Bit>,
+    /// System clock cycles of the current microsecond, from 0.
     us_count: Reg<Bits<6>>,
+    /// High for one cycle each microsecond.
     us_tick: Reg<Bit>,
+    /// High for one cycle when a request is sent: at a rising edge of the trigger pin, or a write of address 0.
     start: Reg<Bit>,
+    /// Request ID; written with address 0.
     #[given]
     request_id: Reg<Bits<4>>,
+    /// Settings; written with address 6.
     #[given]
     settings: Reg<Bits<16>>,
+    /// EEPROM address and data; written with address 7.
     memory: Reg<Bits<16>>,
-    // Nothing to write yet.
+    /// Parity of `memory` as written; wrong while that data must not be sent.
     #[start(true)]
     memory_sum: Reg<Bit>,
+    /// High from a write of address 0 to the end of its exchange: only such a request can write to the EEPROM.
     armed: Reg<Bit>,
-    // A byte has been given that no request has written yet.
+    /// High from a write of address 7 until its data has been sent once.
     memory_is_new: Reg<Bit>,
+    /// High if the EEPROM data can be sent.
     memory_fits: Signal<Local, Bit>,
+    /// 1 if stored bits are checked against their parity.
     has_guards: Constant<Bit>,
+    /// High in the last cycle of a microsecond.
     us_last: Signal<Local, Bit>,
+    /// System clock cycles in a bit, for the clock and rate selected.
     chosen_cycles: Signal<Local, Bits<5>>,
+    /// High if no request is starting or under way: writes are taken.
     can_write: Signal<Local, Bit>,
+    /// System clock cycles in a microsecond, minus one: at 20 MHz, at 60 MHz.
     us_cycles: Vec<Constant<Bits<6>>>,
+    /// System clock cycles in a bit: slow at 20 and 60 MHz, fast at 20 and 60 MHz.
     bit_cycles: Vec<Constant<Bits<5>>>,
 }
 

@@ -71,6 +71,7 @@ pub struct Moments {
     pub busy: Signal<In, Bit>,
     /// The word, two clocks behind `register`.
     pub word: Signal<Out, Bits<16>>,
+    /// Bytes that say how good the reply was.
     #[start]
     verdict_bytes: VerdictBytes,
     /// Low bytes of the words.
@@ -82,53 +83,92 @@ pub struct Moments {
     /// The same bytes, for what a reply does not bring.
     #[start]
     known: Memory<8, 6>,
+    /// Byte of the result that is stored next; 3 at rest, then up to 15 and from 0 to 2.
     #[start(3.into())]
     step: Reg<Bits<4>>,
-    // After a reset a bank is filled with zeros; with guards in two registers, so that no upset does it.
+    /// High after a reset until a bank is filled with zeros.
     #[start(true)]
     clearing: Reg<Bit>,
+    /// Complement of `clearing`, so that no single upset starts the filling.
     cleared: Reg<Bit>,
+    /// Bank that the next result is stored in.
     #[start(1.into())]
     free: Reg<Bits<2>>,
+    /// Bank of the latest result.
     #[start(1.into())]
     latest: Reg<Bits<2>>,
+    /// Bank that the processor reads.
     held: Reg<Bits<2>>,
-    // Parities: a bank that nobody has chosen shows itself.
+    /// Parity of `latest`, to find an upset of it.
     #[start(true)]
     latest_sum: Reg<Bit>,
+    /// Parity of `held`, to find an upset of it.
     held_sum: Reg<Bit>,
+    /// High if the last reply was good.
     is_fresh: Reg<Bit>,
+    /// High if a good single-turn position has come since reset.
     had_single: Reg<Bit>,
+    /// High if a good multi-turn position has come since reset.
     had_multi: Reg<Bit>,
+    /// Parity of the last good single-turn position, as it came.
     single_sum: Reg<Bit>,
+    /// Parity of the last good multi-turn position, as it came.
     multi_sum: Reg<Bit>,
+    /// `is_first` of the cycle before.
     was_first: Reg<Bit>,
+    /// Word whose parity is added, 1 to 4, after address 0 was read; 0 at rest.
     scan: Reg<Bits<3>>,
+    /// `scan` of the cycle before.
     scanned: Reg<Bits<3>>,
+    /// Parity of the words read so far, with those of the positions: 1 at the end is an upset.
     differs: Reg<Bit>,
+    /// Address of the word at the RAM's output.
     shown: Reg<Bits<3>>,
+    /// Word that the processor reads.
     out_data: Reg<Bits<16>>,
+    /// High while a bank is filled with zeros.
     clears: Signal<Local, Bit>,
+    /// High while a byte is stored.
     copies: Signal<Local, Bit>,
+    /// High at the last byte of a result.
     is_last: Signal<Local, Bit>,
+    /// High for one cycle when the last byte is stored.
     ends: Signal<Local, Bit>,
+    /// High if the reply brings a good single-turn position.
     takes_single: Signal<Local, Bit>,
+    /// High if the reply brings a good multi-turn position.
     takes_multi: Signal<Local, Bit>,
+    /// High if the reply brings the byte of this step; else it is copied from the latest result.
     brings: Signal<Local, Bit>,
+    /// Step of the next cycle.
     next_step: Signal<Local, Bits<4>>,
+    /// Byte that is stored.
     byte: Signal<Local, Bits<8>>,
+    /// High if the byte is written to the RAM that the processor reads.
     writes: Signal<Local, Bit>,
+    /// Bank after the latest one.
     after_latest: Signal<Local, Bits<2>>,
+    /// Bank that is neither the latest nor the held one.
     next_free: Signal<Local, Bits<2>>,
+    /// High while the processor reads address 0.
     is_first: Signal<Local, Bit>,
+    /// High for one cycle when the processor takes the latest result.
     takes: Signal<Local, Bit>,
+    /// Address of the word that is read from RAM.
     place: Signal<Local, Bits<3>>,
+    /// Parity of the position bits in the word at the RAM's output.
     part: Signal<Local, Bit>,
+    /// High if the held bank is the one that was chosen, and its positions have their parity.
     fits: Signal<Local, Bit>,
+    /// Cause in the word of address 7.
     cause: Signal<Local, Bits<4>>,
+    /// High if that cause explains a bad result: no upset is shown in its place.
     is_told: Signal<Local, Bit>,
+    /// High byte of the word at the RAM's output.
     high_byte: Signal<Local, Bits<8>>,
+    /// Low byte of the word at the RAM's output.
     low_byte: Signal<Local, Bits<8>>,
+    /// 1 if upsets of stored bits are detected.
     has_guards: Constant<Bit>,
 }
 

@@ -42,14 +42,23 @@ pub struct ReplyBytes {
     pub single_parity: Signal<Out, Bit>,
     /// Parity of the bits of the multi-turn position that have come.
     pub multi_parity: Signal<Out, Bit>,
+    /// Status field so far; passes bytes on while they are fetched.
     status_bits: Reg<Bits<8>>,
+    /// Single-turn position so far; its low byte is fetched first.
     single_bits: Reg<Bits<24>>,
+    /// Multi-turn position so far; passes bytes on while they are fetched.
     multi_bits: Reg<Bits<24>>,
+    /// Kind of encoder, or EEPROM data, so far; passes bytes on while they are fetched.
     byte_bits: Reg<Bits<8>>,
+    /// Alarm field so far; passes bytes on while they are fetched.
     alarm_bits: Reg<Bits<8>>,
+    /// Bits 7 to 4 of the status field, kept while bytes are fetched.
     judged: Reg<Bits<4>>,
+    /// Parity of the single-turn bits, formed as they came; cleared between exchanges.
     single_sum: Reg<Bit>,
+    /// Parity of the multi-turn bits, formed as they came; cleared between exchanges.
     multi_sum: Reg<Bit>,
+    /// High between exchanges, and in a reset.
     forget: Signal<Local, Bit>,
 }
 

@@ -21,10 +21,14 @@ pub struct VerdictBytes {
     pub communication: Signal<Out, Bits<8>>,
     /// High byte of address 7, without busy.
     pub told: Signal<Out, Bits<8>>,
+    /// Cause of the flags.
     #[start]
     primary: LowestCause,
+    /// High if the encoder reports an error of the request.
     complains: Signal<Local, Bit>,
+    /// High if the reply repeats the ID of the request.
     repeats: Signal<Local, Bit>,
+    /// Communication alarm: the high byte of address 6.
     alarms: Signal<Local, Bits<8>>,
 }
 
