@@ -65,7 +65,7 @@ pub struct EncoderPort {
     /// DATA is HIGH, and no frame is on the wire.
     pub line_high: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
-    pub displaced: Signal<Out, Bit>,
+    pub trigger_lost: Signal<Out, Bit>,
     /// A frame, triggered or not, has ended.
     #[bundle]
     pub end: FrameEndOut,
@@ -80,10 +80,10 @@ pub struct EncoderPort {
     pub sample_strobe: Signal<Out, Bit>,
     /// The service's alarm: too many bad frames, or positions 1 and 2 apart; or that of the line: drift or edges beyond their limits.
     pub alarm: Signal<Out, Bit>,
-    /// The host's way to words behind a port.
+    /// The host's access to the words of a port.
     #[bundle]
     pub window: HostWindowIn,
-    /// Port of the service that the program reads or writes; only where the service stands elsewhere, as the next four.
+    /// Port of the service that the program reads or writes; only if the service is outside this port, as the next four.
     pub io_address: Vec<Signal<In, Bits<5>>>,
     /// Strobe: it is read.
     pub io_read: Vec<Signal<In, Bit>>,
@@ -161,7 +161,7 @@ impl EncoderPort {
         }
     }
 
-    /// The same for a service that stands elsewhere, at the `io_` ports.
+    /// The same for a service outside this port, at the `io_` ports.
     pub fn served(
         times: FixedTimes,
         service: Option<&ServiceTimes>,
@@ -186,7 +186,7 @@ impl EncoderPort {
         )
     }
 
-    /// A port for an encoder that speaks another protocol than EnDat. `has_io`: beside it is a service, of which it has nothing.
+    /// A port for an encoder that speaks another protocol than EnDat. `has_io`: it is next to a service that it does not use.
     ///
     /// # Panics
     /// For EnDat, whose ports have settings of their own.
@@ -278,7 +278,8 @@ impl Logic for EncoderPort {
             FrameEndOut::link(&mut self.end, &mut self.channel[i].end);
             AdditionalDataOut::link(&mut self.record, &mut self.channel[i].record);
             connect!(self <= self.channel[i];
-                recovery_cycles, delay_cycles, busy, request_runs, line_high, displaced, reply,
+                recovery_cycles, delay_cycles, busy, request_runs, line_high,
+                trigger_lost = displaced, reply,
                 calibrated, sample_strobe
             );
         }
@@ -299,7 +300,7 @@ impl Logic for EncoderPort {
             FrameResultOut::link(&mut self.result, &mut self.t_format[i].result);
             connect!(self.line <= self.t_format[i]; data_o, data_oe);
             connect!(self.end <= self.t_format[i]; over, over_request);
-            connect!(self <= self.t_format[i]; busy, displaced);
+            connect!(self <= self.t_format[i]; busy, trigger_lost);
             self.window.host_word.next = self.t_format[i].host_word.val();
         }
         for i in 0..self._ssis {
@@ -316,7 +317,7 @@ impl Logic for EncoderPort {
             self.line.data_oe.next = false;
             self.end.over.next = self.ssi[i].over.val();
             self.end.over_request.next = false;
-            connect!(self <= self.ssi[i]; busy, displaced);
+            connect!(self <= self.ssi[i]; busy, trigger_lost);
         }
         for i in 0..self._served {
             connect!(self.served[i] <= self; clock, reset);

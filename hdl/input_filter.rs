@@ -36,7 +36,7 @@ pub struct InputFilter {
     pub level_first: Signal<Out, Bit>,
     /// High in the first cycle in which `level` is high, or has changed.
     pub edge_strobe: Signal<Out, Bit>,
-    /// This edge stands between `level_first` and `level`, not before both.
+    /// This edge is between `level_first` and `level`, not before both.
     pub edge_second: Signal<Out, Bit>,
     /// Strobe: a pulse has been removed.
     pub glitch: Signal<Out, Bit>,

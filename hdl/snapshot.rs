@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! publish    __/\__________________    position, time stamp and what checks them change places with those before
-//! confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
-//! withdraw   ____________/\________    or: it has not; what was before comes back
+//! confirm    ____________/\________    the frame has ended as it should: the result before is discarded
+//! withdraw   ____________/\________    or it has not: the result before comes back
 //! ```
 //!
 //! <!-- without restores -->
@@ -193,7 +193,7 @@ impl Logic for Snapshot {
         if self.timed.q.val() {
             self.pending_parity.d.next = self.stamp_pending.q.val().xor();
         }
-        // Of the cycle before: the sum of all its bits is too long a way to what loads.
+        // Parity is registered one cycle early: a 32-bit XOR in the load path would miss timing.
         self.pending_sum.d.next = self.stamp_pending.q.val().xor();
         self.pending_wrong.next = self.has_guards.val()
             & self.told.good.val()
@@ -264,8 +264,8 @@ impl Logic for Snapshot {
             self.unconfirmed.d.next = true;
         }
 
-        // The guard. Its first look is at what has just been loaded: the position from where the CRC was checked, the time stamp from where its
-        // parity was, but for the last cycle.
+        // The guard. In the first cycle it checks the time stamp that has just been loaded against the parity of the pending one; the CRC has
+        // checked the position.
         self.stamp_sum.next = self.stamp.q.val().xor();
         self.parity_now.next = self.held.q.val().xor()
             ^ self.stamp_sum.val()

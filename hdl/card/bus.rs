@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A front knows its bus and nothing of registers; [`word_access`] turns one word of it into the bank's bytes and decides which
-//! words belong to one moment. See `docs/bus.md`.
+//! words belong to one snapshot. See `docs/bus.md`.
 
 pub mod ahb_lite;
 pub mod apb;
@@ -16,7 +16,7 @@ pub mod strobes;
 pub mod wishbone;
 pub mod word_access;
 
-/// What stands between the registers and the host.
+/// Connection between the registers and the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HostBus {
     /// UART in the UARTBone format.
@@ -54,7 +54,7 @@ pub struct BusRow {
 pub enum Place {
     /// To pins of a board.
     Pins,
-    /// They stay inside the chip, behind addresses of a system.
+    /// They stay inside the chip, at addresses of a system.
     System,
     /// They stay inside the chip, without addresses.
     Inside,

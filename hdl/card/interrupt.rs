@@ -56,16 +56,16 @@ pub struct Interrupt {
     had_error: Vec<Reg<Bit>>,
     /// `alarm` of the cycle before, per channel.
     had_alarm: Vec<Reg<Bit>>,
-    /// Events of this cycle, from the last channel down: 4 bits each, the lowest channel's lowest.
+    /// Events of this cycle, from the last channel down: 4 bits each (result, error, alarm, request), the lowest channel's lowest.
     events: Vec<Signal<Local, Bits<32>>>,
-    /// Bit 0 of a channel's events: a new result.
-    one: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 0 of the channel's events: a new result.
+    result_event: Vec<Signal<Local, Bits<32>>>,
     /// Bit 1: a result that is an error, or became one.
-    two: Vec<Signal<Local, Bits<32>>>,
+    error_event: Vec<Signal<Local, Bits<32>>>,
     /// Bit 2: the alarm has come on.
-    four: Vec<Signal<Local, Bits<32>>>,
+    alarm_event: Vec<Signal<Local, Bits<32>>>,
     /// Bit 3: the frame of a request has ended.
-    eight: Vec<Signal<Local, Bits<32>>>,
+    request_event: Vec<Signal<Local, Bits<32>>>,
     /// High if the address is one of these words.
     selected: Signal<Local, Bit>,
     /// Word that the address selects.
@@ -88,10 +88,10 @@ impl Interrupt {
             had_error: each(channels),
             had_alarm: each(channels),
             events: each(channels + 1),
-            one: each(channels),
-            two: each(channels),
-            four: each(channels),
-            eight: each(channels),
+            result_event: each(channels),
+            error_event: each(channels),
+            alarm_event: each(channels),
+            request_event: each(channels),
             words: Constant::new(u64::from(INTERRUPT.base >> 2).into()),
             _channels: channels,
             _links: channels + 1,
@@ -109,28 +109,28 @@ impl Logic for Interrupt {
             self.had_error[i].d.next = self.error[i].val();
             connect!(self.had_alarm[i] <= self; clock, reset);
             self.had_alarm[i].d.next = self.alarm[i].val();
-            self.one[i].next = 0.into();
+            self.result_event[i].next = 0.into();
             if self.result[i].val() {
-                self.one[i].next = 1.into();
+                self.result_event[i].next = 1.into();
             }
             // Each bad result, and a cause that comes after its result.
-            self.two[i].next = 0.into();
+            self.error_event[i].next = 0.into();
             if self.error[i].val() & (self.had_result[i].q.val() | !self.had_error[i].q.val()) {
-                self.two[i].next = 2.into();
+                self.error_event[i].next = 2.into();
             }
-            self.four[i].next = 0.into();
+            self.alarm_event[i].next = 0.into();
             if self.alarm[i].val() & !self.had_alarm[i].q.val() {
-                self.four[i].next = 4.into();
+                self.alarm_event[i].next = 4.into();
             }
-            self.eight[i].next = 0.into();
+            self.request_event[i].next = 0.into();
             if self.request[i].val() {
-                self.eight[i].next = 8.into();
+                self.request_event[i].next = 8.into();
             }
             self.events[i].next = (self.events[i + 1].val() << 4)
-                | self.one[i].val()
-                | self.two[i].val()
-                | self.four[i].val()
-                | self.eight[i].val();
+                | self.result_event[i].val()
+                | self.error_event[i].val()
+                | self.alarm_event[i].val()
+                | self.request_event[i].val();
         }
         for i in self._channels..self._links {
             self.events[i].next = 0.into();

@@ -1,11 +1,11 @@
-//! The recovery time once more, beside the channel: a counter that no frame resets, kept at the edges.
+//! The recovery time, measured a second time apart from the channel: a counter that no frame resets, kept at the edges.
 //!
 //! ```text
 //! CLOCK as it goes to the pin ---------- rising edge ---> rise = counter
 //! DATA pin --> synchroniser of its own --falling edge---> fall = counter
 //! ```
 //!
-//! DATA falls within the answer, too, and with a long cable behind the last edge of CLOCK: the last fall is the one that counts. The
+//! DATA falls within the answer, too, and with a long cable after the last edge of CLOCK: the last fall is the one that counts. The
 //! counters of two channels are never equal, so a control sees that it reads the one it means, and that it runs.
 
 use crate::regs::{COUNTER_SPACING, RECOVERY};
@@ -106,7 +106,7 @@ impl Logic for RecoveryCounter {
             self.word.next = place!(self.counter.q.val(), recovery.counter.value)
                 | place!(self.is_over.val(), recovery.counter.fallen);
         }
-        // A word is of one moment: that of its first byte.
+        // The read of the first byte latches the other three.
         if !self.lane.val().any() {
             self.held.d.next = self.word.val().get_bits::<24>(0);
         }

@@ -9,14 +9,14 @@
 //!        results of channels+
 //! ```
 //!
-//! **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with `access` and stand until
+//! **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with `access` and kept until
 //! `done`; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
 //!
 //! Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them, and not from
 //! the first to the last result of a trigger: half of it is new, the other half is not.
 //!
 //! The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it would have no
-//! end. For a host that reads in step with the triggers, so that there never is a moment between two reads in which the words may follow,
+//! end. For a host that reads in step with the triggers, so that the words may never follow between two reads,
 //! they follow as the read begins, if the second trigger has come by then. See `docs/host-link.md`.
 
 use crate::card::config_ring::{ConfigRing, RING_BYTES};
@@ -61,7 +61,7 @@ pub struct RegisterBank {
     pub channel_byte: Signal<In, Bits<8>>,
     /// The configuration ring moves on by one byte.
     pub ring_turn: Signal<Out, Bit>,
-    /// The configuration ring stands still.
+    /// The configuration ring is at rest.
     pub ring_home: Signal<Out, Bit>,
     /// Byte from the first channel's ring block, its parity in bit 8.
     pub ring_in: Signal<In, Bits<9>>,
@@ -84,7 +84,7 @@ pub struct RegisterBank {
     pub calibrate: Signal<Out, Bits<8>>,
     /// Enabled trigger sources.
     pub sources: Signal<Out, Bits<3>>,
-    /// Channels that take no trigger, as they stand on the ring.
+    /// Channels that take no trigger, directly from the ring.
     pub disabled: Signal<Out, Bits<8>>,
     /// Strobe: a word with settings of triggers has been written.
     pub restart: Signal<Out, Bit>,
@@ -143,13 +143,13 @@ pub struct RegisterBank {
     trigger_strobe: Reg<Bit>,
     /// One bit per channel, high for one cycle after a write of the word `calibrate`.
     calibrate_strobe: Reg<Bits<8>>,
-    /// Enabled trigger sources; copied from the ring while it stands still.
+    /// Enabled trigger sources; copied from the ring while it is at rest.
     #[given]
     active_sources: Reg<Bits<3>>,
-    /// Period of the trigger timer; copied from the ring while it stands still.
+    /// Period of the trigger timer; copied from the ring while it is at rest.
     #[given]
     active_period: Reg<Bits<24>>,
-    /// High while the host holds the results; copied from the ring while it stands still.
+    /// High while the host holds the results; copied from the ring while it is at rest.
     hold: Reg<Bit>,
     /// `blocked_now` of the cycle before: high while the host reads or holds results.
     #[start(true)]

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Mode 0, 32 bits to a word, most significant first. `c` channels; `r r` counts what has been read before, so that an answer is never the one
-//! before. The words are those of the register block `result`; behind them stand the channel's number and `k k`, CRC-16/CCITT-FALSE (polynomial
+//! before. The words are those of the register block `result`; they are followed by the channel's number and `k k`, CRC-16/CCITT-FALSE (polynomial
 //! 0x1021, start 0xFFFF) over everything since the check sum before. The controller may stop anywhere.
 //!
 //! Nothing that comes in here reaches the card but clock and select: whatever the second controller does, the first one does not see it.
@@ -60,7 +60,7 @@ pub struct SecondInterface {
     pub take: Signal<Out, Bit>,
     /// Channel whose word is next.
     pub channel: Signal<Out, Bits<4>>,
-    /// The next word of it; behind the last one that of the check sum.
+    /// The next word of it; following the last one that of the check sum.
     pub word_at: Signal<Out, Bits<4>>,
     /// That word.
     pub word: Signal<In, Bits<32>>,

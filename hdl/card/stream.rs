@@ -8,7 +8,7 @@
 //! host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
 //! ```
 //!
-//! What a set and a frame look like is told in `docs/stream.md`. A set that is closed is taken whole in one cycle, then written in its own
+//! `docs/stream.md` has the format of a set and of a frame. A set that is closed is taken whole in one cycle, then written in its own
 //! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 
 use crate::card::ports::PushOut;
@@ -289,7 +289,7 @@ impl Logic for Stream {
             self.is_run[i].d.next = self.is_run[i].q.val();
             self.head_taken[i].d.next = self.head_taken[i].q.val();
             self.place_taken[i].d.next = self.place_taken[i].q.val();
-            // Whose turn it is keeps it until it is taken: otherwise the first one behind the turns of no channel would have most of the room.
+            // A waiting channel keeps its turn until it is taken: otherwise the channel following unused turns would get most of the room.
             if self.run_now[i].val() | !self.run_ready[i].val() {
                 self.turn[i].d.next = self.turn[i].q.val() + 1;
             }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
 //!
 //! Between answers it pushes the frames of a [`crate::card::stream::Stream`], each in one piece; an answer then begins with 0xFF.
 //!
@@ -266,7 +266,7 @@ impl Logic for UartBridge {
                 }
             }
             BridgeState::Read => {
-                // An answer that stands still would stand for ever: a byte of it that is lost in here never comes again.
+                // Without the time-out an answer would wait for ever for a byte that an upset has lost.
                 self.stop_timer.d.next = self.transmitter.accept.val();
                 if self.sent.q.val() {
                     self.next_lane.next = true;

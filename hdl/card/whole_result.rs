@@ -170,7 +170,7 @@ impl Logic for WholeResult {
         self.open.d.next = self.open_now.val() & !self.closes.val();
         self.is_open.next = self.open_now.val();
 
-        // The content counts if its CRC is right; the CRC stands as it came.
+        // The content counts if its CRC is right; the CRC is shown as it came.
         self.filled_1.next = (bit_cast::<31, 5>(self.record.info_crcs.val().get_bits::<5>(0))
             << 26)
             | (bit_cast::<31, 1>(self.record.info_came.val().get_bits::<1>(0)) << 24);

@@ -1,6 +1,6 @@
-// crc16_as_sent: The two bytes behind a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
+// crc16_as_sent: The two bytes following a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
 // whole_frames_only: What may be read ends with a frame: its end moves only when the last byte of a frame has been written.
-// never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it beside the bytes that wait.
+// never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it in addition to the bytes that wait.
 reg [15:0] f_crc; initial f_crc = 16'hffff;
 reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
 wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;

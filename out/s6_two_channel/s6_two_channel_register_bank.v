@@ -13,14 +13,14 @@
 //        ring byte ---------OR--> read_byte
 //        results of channels+
 //
-// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and stand until
+// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and kept until
 // done; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
 //
 // Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them, and not from
 // the first to the last result of a trigger: half of it is new, the other half is not.
 //
 // The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it would have no
-// end. For a host that reads in step with the triggers, so that there never is a moment between two reads in which the words may follow,
+// end. For a host that reads in step with the triggers, so that the words may never follow between two reads,
 // they follow as the read begins, if the second trigger has come by then. See docs/host-link.md.
 module s6_two_channel_register_bank (
     // System clock.
@@ -69,7 +69,7 @@ module s6_two_channel_register_bank (
     input  wire   [7:0] channel_byte,
     // The configuration ring moves on by one byte.
     output wire         ring_turn,
-    // The configuration ring stands still.
+    // The configuration ring is at rest.
     output wire         ring_home,
     // Byte from the first channel's ring block, its parity in bit 8.
     input  wire   [8:0] ring_in,
@@ -206,13 +206,13 @@ module s6_two_channel_register_bank (
     // One bit per channel, high for one cycle after a write of the word calibrate.
     reg    [7:0] calibrate_strobe; initial calibrate_strobe = 8'd0;
     reg    [7:0] calibrate_strobe_next;
-    // Enabled trigger sources; copied from the ring while it stands still.
+    // Enabled trigger sources; copied from the ring while it is at rest.
     reg    [2:0] active_sources; initial active_sources = 3'd3;
     reg    [2:0] active_sources_next;
-    // Period of the trigger timer; copied from the ring while it stands still.
+    // Period of the trigger timer; copied from the ring while it is at rest.
     reg   [23:0] active_period; initial active_period = 24'h2710;
     reg   [23:0] active_period_next;
-    // High while the host holds the results; copied from the ring while it stands still.
+    // High while the host holds the results; copied from the ring while it is at rest.
     reg          hold; initial hold = 1'b0;
     reg          hold_next;
     // blocked_now of the cycle before: high while the host reads or holds results.
@@ -250,7 +250,7 @@ module s6_two_channel_register_bank (
             hold_next = ring_word2[0];
         end
     end
-    // What an access is stands from its begin to its end, whatever the front shows.
+    // Address and direction of an access are kept from its start to its end, whatever the front shows.
     assign busy = turning | ended;
 
     always @* begin
@@ -575,7 +575,7 @@ module s6_two_channel_register_bank (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // read_is_one_moment: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
+    // read_is_one_snapshot: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
     // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins, whatever other channels owe.
     reg [1:0] f_came; initial f_came = 2'd0;
     always @(posedge clock) begin
@@ -589,7 +589,7 @@ module s6_two_channel_register_bank (
     end
     reg f_reading; initial f_reading = 1'b0;
     always @(posedge clock) f_reading <= reading & !reset;
-    always @* `FORMAL_LABEL(read_is_one_moment) assert (!f_reading | (!load & !show));
+    always @* `FORMAL_LABEL(read_is_one_snapshot) assert (!f_reading | (!load & !show));
 `endif
 `undef FORMAL_LABEL
 `endif

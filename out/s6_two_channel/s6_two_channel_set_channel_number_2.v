@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// One channel's part of a sample set: which trigger it took, and its result at the moment when the set is closed.
+// One channel's part of a sample set: which trigger it took, and its result when the set is closed.
 //
 // trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
 //                     ^   |                 ^
@@ -51,6 +51,10 @@ module s6_two_channel_set_channel_number_2 (
 
     // High if the channel took the trigger of the set and has its result.
     wire         is_own;
+    // High for one cycle when the channel's entry in the set is cleared: it has no result for it.
+    wire         empties;
+    // High if the block that is asked for is not this channel's.
+    wire         is_other;
     // High while the result of the trigger is missing.
     wire         open;
     // Cause, flags, valid and fresh of this cycle's result.
@@ -66,11 +70,9 @@ module s6_two_channel_set_channel_number_2 (
     // Position in the set that is being written; 0 if the channel has none for it.
     reg   [47:0] position_taken; initial position_taken = 48'd0;
     reg   [47:0] position_taken_next;
-    wire         position_taken_reset;
     // Cause, flags, valid and fresh in the set that is being written.
     reg   [15:0] status_taken; initial status_taken = 16'd0;
     reg   [15:0] status_taken_next;
-    wire         status_taken_reset;
     // High if the channel took the trigger of that set.
     reg          took_taken; initial took_taken = 1'b0;
     reg          took_taken_next;
@@ -80,7 +82,6 @@ module s6_two_channel_set_channel_number_2 (
     // Byte of position or status that is asked for; 0 while another block is.
     reg    [7:0] set_byte_held; initial set_byte_held = 8'd0;
     reg    [7:0] set_byte_held_next;
-    wire         set_byte_held_reset;
     wire         _unused_ok = &{1'b0, flags[11:0], flags[19]};
 
     always @* begin
@@ -127,10 +128,9 @@ module s6_two_channel_set_channel_number_2 (
     assign open = waiting & !result_strobe;
     assign owes = open;
     assign replaced = took & !waiting & result_strobe;
-    // No other result of another trigger gets in: what the channel does not have is 0.
+    // Clear the entry if this trigger has no result, so that an older result is never reported as new.
     assign is_own = took & !open;
-    assign position_taken_reset = take & !is_own;
-    assign status_taken_reset = take & !is_own;
+    assign empties = take & !is_own;
     assign status = {1'b0, flags[18:12], fresh, position_valid, 1'b0, cause};
 
     always @* begin
@@ -145,8 +145,8 @@ module s6_two_channel_set_channel_number_2 (
             missing_taken_next = open;
         end
     end
-    // A reset by deselection alone takes no logic.
-    assign set_byte_held_reset = block != NUMBER;
+    // Reported with the first status byte; the bytes before it have been sent.
+    assign is_other = block != NUMBER;
     assign shown = set_byte_held;
     assign set_byte = shown;
 
@@ -165,23 +165,17 @@ module s6_two_channel_set_channel_number_2 (
     end
 
     always @(posedge clock) begin
-        if (position_taken_reset) begin
+        if (empties) begin
             position_taken <= 48'd0;
-        end else begin
-            position_taken <= position_taken_next;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (status_taken_reset) begin
             status_taken <= 16'd0;
         end else begin
+            position_taken <= position_taken_next;
             status_taken <= status_taken_next;
         end
     end
 
     always @(posedge clock) begin
-        if (set_byte_held_reset) begin
+        if (is_other) begin
             set_byte_held <= 8'd0;
         end else begin
             set_byte_held <= set_byte_held_next;

@@ -7,8 +7,8 @@
 // Snapshot: one result per trigger, changed in one clock cycle, with the last good position held.
 //
 // publish    __/\__________________    position, time stamp and what checks them change places with those before
-// confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
-// withdraw   ____________/\________    or: it has not; what was before comes back
+// confirm    ____________/\________    the frame has ended as it should: the result before is discarded
+// withdraw   ____________/\________    or it has not: the result before comes back
 //
 // Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 module s6_two_channel_snapshot (

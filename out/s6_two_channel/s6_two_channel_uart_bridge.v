@@ -11,7 +11,7 @@
 // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
 //
 // Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-// after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+// after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
 //
 // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
 //
@@ -74,7 +74,7 @@ module s6_two_channel_uart_bridge (
     // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
     //
     // Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-    // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+    // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
     //
     // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
     //
@@ -335,7 +335,7 @@ module s6_two_channel_uart_bridge (
                 end
             end
             BRIDGE_STATE_READ: begin
-                // An answer that stands still would stand for ever: a byte of it that is lost in here never comes again.
+                // Without the time-out an answer would wait for ever for a byte that an upset has lost.
                 stop_timer_next = transmitter_accept;
                 if (sent) begin
                     next_lane = 1'b1;

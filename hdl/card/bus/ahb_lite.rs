@@ -6,8 +6,8 @@
 //! hrdata, hreadyout, hresp <----------------------------------- finished
 //! ```
 //!
-//! An address phase is taken when `hready` and `hreadyout` are HIGH; its data phase has wait states until the word is there, and the next address phase may stand
-//! beside its last cycle. Words only: another size, or an address that is no multiple of 4, has the two cycles of an error, and nothing is
+//! An address phase is taken when `hready` and `hreadyout` are HIGH; its data phase has wait states until the word is there, and the next address phase may overlap
+//! its last cycle. Words only: another size, or an address that is no multiple of 4, has the two cycles of an error, and nothing is
 //! done. A burst is its single words.
 //!
 //! Ref: ARM IHI 0033A, AMBA 3 AHB-Lite Protocol v1.0.
@@ -80,8 +80,8 @@ impl Logic for AhbLiteFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         self.hreadyout.next = !self.busy.q.val() & !self.refused.q.val();

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A transfer is taken in the cycle after its first one, if it is enabled then: what a master shows in a longer SETUP and changes does not count.
-//! Every transfer has wait states; none is without an end. `pslverr` tells an address that is no multiple of 4. A
+//! Every transfer has wait states; none is without an end. `pslverr` reports an address that is no multiple of 4. A
 //! master that takes `psel` away before `pready` gets no answer, and a write that has begun is carried out.
 //!
 //! Ref: ARM IHI 0024B, AMBA 3 APB Protocol v1.0.
@@ -79,8 +79,8 @@ impl Logic for ApbFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         // Also in the second cycle of a transfer, if one that was abandoned kept it waiting.
@@ -98,12 +98,12 @@ impl Logic for ApbFront {
             self.ready.d.next = self.misaligned.val();
             self.error.d.next = self.misaligned.val();
         }
-        // A master that leaves in the middle gets no answer: the next transfer would take it for its own.
+        // If the master drops the transfer, give no answer: the next transfer would take it as its own.
         self.enabled.next = self.psel.val() & self.penable.val();
         if self.busy.q.val() & !self.enabled.val() {
             self.abandoned.d.next = true;
         }
-        // One that leaves at once, or does not enable it, has asked for nothing: its word cannot be trusted any more.
+        // Cancel the access if the master drops the transfer one cycle after it, or does not enable it: its write data may no longer be valid.
         self.words.request.next = self.request.q.val() & self.enabled.val();
         if self.words.finished.val() | (self.request.q.val() & !self.enabled.val()) {
             self.busy.d.next = false;

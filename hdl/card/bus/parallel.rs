@@ -8,12 +8,12 @@
 //!
 //! | register | read | write |
 //! |---|---|---|
-//! | 0, 1, 2 | position, bits 15..0, 31..16, 47..32; register 0 takes the moment of 0 to 4 | |
+//! | 0, 1, 2 | position, bits 15..0, 31..16, 47..32; reading register 0 latches 0 to 4 | |
 //! | 3, 4 | word `status` of the result, bits 31..16 and 15..0 | |
 //! | 5 | bit 15 busy, 13:11 channel, 10:0 word address | 13:11 channel of 0 to 4, 10:0 word address; begins to read that word unless bit 14 is set |
 //! | 6, 7 | the word, bits 15..0, 31..16 | the same; writing 7 writes the word |
 //!
-//! A register's data stands at the pins 4 clocks after the register has been selected. While bit 15 of register 5 is set, writes
+//! A register's data are at the pins 4 clocks after the register has been selected. While bit 15 of register 5 is set, writes
 //! are ignored. The direct registers follow a result after 130 clocks at most.
 
 use super::strobes::BusStrobes;
@@ -122,13 +122,13 @@ impl Logic for ParallelFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         connect!(self.strobes <= self; clock, reset, cs_n, rd_n, wr_n, register_at, data_in);
 
-        // Reading register 0 takes the moment that registers 0 to 4 show.
+        // Reading register 0 latches what registers 0 to 4 show.
         self.is_first.next = self.strobes.reading.val() & !self.strobes.register.val().any();
         self.was_first.d.next = self.is_first.val();
         if self.is_first.val() & !self.was_first.q.val() {
@@ -137,8 +137,8 @@ impl Logic for ParallelFront {
         }
         self.is_busy.next =
             self.wants_read.q.val() | self.wants_write.q.val() | self.settling.q.val();
-        // What has been read once stands still until another register is read, or the strobe ends. Register 0 takes its moment in the first
-        // cycle, so the second one still counts.
+        // The data are held until another register is read, or the strobe ends. Register 0 latches in the first cycle, so the second one still
+        // counts.
         self.was_read.d.next = self.strobes.reading.val();
         self.last_register.d.next = self.strobes.register.val();
         self.is_same.next = self.strobes.reading.val()
@@ -200,7 +200,7 @@ impl Logic for ParallelFront {
             }
         }
 
-        // The result of the channel is read over and over: three words, upwards, so of one moment. The window comes between two rounds.
+        // The result of the channel is read again and again: three words at rising addresses, so of one snapshot. The window comes between two rounds.
         self.request.d.next = false;
         if !self.busy.q.val() {
             self.busy.d.next = true;

@@ -8,7 +8,7 @@
 //! Addresses count words and rise; `n` words, 1 to 255. `c1 c0` is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF): in a read over
 //! the four bytes of the request and all words that came, in a write over everything before it, from the second word on over that
 //! word. A word is written when its check sum is right; otherwise nothing more of the frame is. `s` is 0xA0, or 0xA2 if the last write was refused.
-//! All result words of a frame are of one moment. A frame may end anywhere. A read that comes while a word is still being written waits for it;
+//! All result words of a frame are of one snapshot. A frame may end anywhere. A read that comes while a word is still being written waits for it;
 //! if the host's clock does not, the check sum of its answer is wrong.
 
 use super::word_access::WordAccess;
@@ -170,9 +170,9 @@ impl Default for SpiFront {
 impl Logic for SpiFront {
     fn update(&mut self) {
         connect!(self.words <= self;
-            clock, reset, tick_us, keep_moment = selected
+            clock, reset, tick_us, keep_snapshot = selected
         );
-        self.words.end_moment.next = !self.selected.val();
+        self.words.end_snapshot.next = !self.selected.val();
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         self.sck_0.d.next = self.sck.val();
@@ -290,7 +290,7 @@ impl Logic for SpiFront {
                     if self.byte_count.q.val().get_bit(0) {
                         self.state.d.next = SpiState::Ignore;
                         if self.writing.q.val() {
-                            // A check sum behind what it belongs to leaves 0.
+                            // Data followed by their check sum leave 0.
                             self.refused.d.next = self.crc.q.val().any() | self.waits.val();
                             if !self.crc.q.val().any() & !self.waits.val() {
                                 self.asked.d.next = true;

@@ -80,8 +80,8 @@ impl Logic for WishboneFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         // Also later than the first cycle of a transfer, if one that was abandoned kept it waiting.
@@ -100,11 +100,11 @@ impl Logic for WishboneFront {
             self.busy.d.next = !self.refused.val();
             self.error.d.next = self.refused.val();
         }
-        // A master that leaves in the middle gets no answer: the next transfer would take it for its own.
+        // If the master drops the request, give no answer: the next transfer would take it as its own.
         if self.busy.q.val() & !self.asks.val() {
             self.abandoned.d.next = true;
         }
-        // One that leaves at once has asked for nothing: its word cannot be trusted any more.
+        // Cancel the access if the master drops the request one cycle after it: its write data may no longer be valid.
         self.words.request.next = self.request.q.val() & self.asks.val();
         if self.words.finished.val() | (self.request.q.val() & !self.asks.val()) {
             self.busy.d.next = false;

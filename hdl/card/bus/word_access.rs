@@ -1,16 +1,16 @@
 //! Word access: a 32-bit word of a bus becomes accesses of the register bank's bytes.
 //!
 //! ```text
-//! request, word_address --> [result word: new moment?] --> lane 0 .. 3: access, done --> data --> finished
+//! request, word_address --> [result word: new snapshot?] --> lane 0 .. 3: access, done --> data --> finished
 //!                                 |                        configuration: one turn, bytes as they pass
 //!                                 +--> reading
 //! ```
 //!
-//! **One moment.** Reads of result words whose addresses rise are of one moment, as one burst of the UART is: the first of them
-//! takes the moment, `reading` holds it. A read of the same or of a lower address takes the next one. A moment ends by itself
+//! **Snapshot.** Reads of result words at rising addresses are of one snapshot, as one burst of the UART is: the first of them
+//! takes the snapshot, `reading` holds it. A read of the same or of a lower address takes the next one. A snapshot ends by itself
 //! 7 to 8 us after its last read, so that a host that stops in the middle does not stop the results.
 //!
-//! From `request` to `finished`: 17 cycles for a word that is read, 3 more for the first of a moment, 26 for a word of a service or line
+//! From `request` to `finished`: 17 cycles for a word that is read, 3 more for the first of a snapshot, 26 for a word of a service or line
 //! monitor; 5 for a strobe; a turn of the configuration ring (12 cycles for the card and each channel) and 4 for a configuration word,
 //! read or written, and for a word that is written to a service or line monitor.
 
@@ -19,7 +19,7 @@ use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Bit of the microsecond counter that ends a moment.
+/// Microseconds without a read after which a snapshot ends.
 pub const QUIET_US: u64 = 8;
 
 /// A word in four bytes.
@@ -40,10 +40,10 @@ pub struct WordAccess {
     pub write_in: Signal<In, Bit>,
     /// Word to write, with `request`.
     pub data_in: Signal<In, Bits<32>>,
-    /// The front is within a burst: the moment does not end by itself.
-    pub keep_moment: Signal<In, Bit>,
-    /// Strobe: the moment ends.
-    pub end_moment: Signal<In, Bit>,
+    /// The front is within a burst: the snapshot does not end by itself.
+    pub keep_snapshot: Signal<In, Bit>,
+    /// Strobe: the snapshot ends.
+    pub end_snapshot: Signal<In, Bit>,
     /// Strobe: the access has ended.
     pub finished: Signal<Out, Bit>,
     /// Word that was read, from `finished` to the next `request`.
@@ -69,6 +69,8 @@ pub struct WordAccess {
     last_read: Reg<Bits<7>>,
     /// Microseconds since the last read of a result word; 8 ends the snapshot.
     quiet_us: Reg<Bits<4>>,
+    /// Page of the register map that the address is in.
+    page: Signal<Local, Bits<4>>,
     /// High if a word of a result is read.
     is_result: Signal<Local, Bit>,
     /// High if the address is a configuration word.
@@ -80,13 +82,14 @@ pub struct WordAccess {
 #[kernel]
 impl Logic for WordAccess {
     fn update(&mut self) {
-        self.is_result.next = !self.write_in.val() & (self.address_in.val().get_bits::<4>(7) == 3);
-        self.is_config.next =
-            (self.address_in.val().get_bits::<4>(7) == 2) & !self.address_in.val().get_bit(2);
+        // 128 words each: page 2 has configurations, in the first four of each eight words; page 3 has results.
+        self.page.next = self.address_in.val().get_bits::<4>(7);
+        self.is_result.next = !self.write_in.val() & (self.page.val() == 3);
+        self.is_config.next = (self.page.val() == 2) & !self.address_in.val().get_bit(2);
         self.goes_on.next = self.holding.q.val()
             & (self.address_in.val().get_bits::<7>(0) > self.last_read.q.val());
 
-        // A moment: `reading` falls for two cycles, in which the held words take over what is there.
+        // A new snapshot: `reading` falls for two cycles, in which the held words follow the results.
         self.access_strobe.d.next = false;
         self.end_strobe.d.next = false;
         if self.settle.q.val().any() {
@@ -101,10 +104,10 @@ impl Logic for WordAccess {
         if self.tick_us.val() {
             self.quiet_us.d.next = self.quiet_us.q.val() + 1;
         }
-        if self.keep_moment.val() {
+        if self.keep_snapshot.val() {
             self.quiet_us.d.next = 0.into();
         }
-        if self.quiet_us.q.val().get_bit(3) | self.end_moment.val() {
+        if self.quiet_us.q.val().get_bit(3) | self.end_snapshot.val() {
             self.holding.d.next = false;
             self.quiet_us.d.next = 0.into();
         }

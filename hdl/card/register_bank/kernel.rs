@@ -23,7 +23,7 @@ impl Logic for RegisterBank {
         self.answer();
     }
 
-    /// What an access is stands from its begin to its end, whatever the front shows.
+    /// Address and direction of an access are kept from its start to its end, whatever the front shows.
     fn hold_access(&mut self) {
         self.busy.next = self.turning.q.val() | self.ended.q.val();
         self.starts.next = self.front.access.val() & !self.busy.val();
@@ -333,7 +333,7 @@ impl Logic for RegisterBank {
         }
     }
 
-    /// The word behind a port.
+    /// The words of services, line monitors and ports.
     fn reach_service(&mut self) {
         if !self.busy.val() {
             self.line_selected.d.next = self.line_page.val() | self.port_page.val();

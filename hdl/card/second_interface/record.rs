@@ -26,9 +26,9 @@ pub struct SecondRecord {
     pub take: Signal<In, Bit>,
     /// Channel whose word is wanted.
     pub channel: Signal<In, Bits<4>>,
-    /// Which of its words; behind the last one that of the check sum.
+    /// Which of its words; following the last one that of the check sum.
     pub word_at: Signal<In, Bits<4>>,
-    /// Word of the channels behind this one.
+    /// Word of the channels following this one.
     pub word_in: Signal<In, Bits<32>>,
     /// The same, or this channel's word.
     pub word: Signal<Out, Bits<32>>,

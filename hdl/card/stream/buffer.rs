@@ -39,7 +39,7 @@ pub const fn frame_bytes(channels: usize, additional_data: bool) -> u64 {
     set_bytes(channels, additional_data) + 2
 }
 
-/// System clock cycles from the moment when a set is closed until the next one can be.
+/// System clock cycles from the close of a set until the next one can be.
 pub const fn frame_cycles(channels: usize, additional_data: bool) -> u64 {
     BYTE_CYCLES * (set_bytes(channels, additional_data) + 3) + 2
 }
@@ -67,7 +67,7 @@ pub struct FrameBuffer {
     pub idle: Signal<Out, Bit>,
     /// A whole frame fits.
     pub room: Signal<Out, Bit>,
-    /// And behind a single one another frame, so that the sets of triggers keep their place.
+    /// A single position fits, and another frame after it, so that the sets of triggers keep their place.
     pub single_room: Vec<Signal<Out, Bit>>,
     /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
     pub block: Signal<Out, Bits<4>>,

@@ -1,4 +1,4 @@
-//! One channel's part of a sample set: which trigger it took, and its result at the moment when the set is closed.
+//! One channel's part of a sample set: which trigger it took, and its result when the set is closed.
 //!
 //! ```text
 //! trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
@@ -80,6 +80,10 @@ pub struct SetChannel {
     late_now: Signal<Local, Bit>,
     /// High if the channel took the trigger of the set and has its result.
     is_own: Signal<Local, Bit>,
+    /// High for one cycle when the channel's entry in the set is cleared: it has no result for it.
+    empties: Signal<Local, Bit>,
+    /// High if the block that is asked for is not this channel's.
+    is_other: Signal<Local, Bit>,
     /// Position in the set that is being written; 0 if the channel has none for it.
     position_taken: Reg<Bits<48>>,
     /// Parity of that position, as it came with its CRC.
@@ -174,7 +178,7 @@ impl Logic for SetChannel {
         self.owes.next = self.open.val();
         self.replaced.next = self.took.q.val() & !self.waiting.q.val() & self.result_strobe.val();
 
-        // A result that was missing in its set, and has come since. One that comes behind it is that of another trigger.
+        // A result that was missing in its set, and has come since. A result after it belongs to another trigger.
         self.late_now.next = self.late.q.val();
         if self.result_strobe.val() {
             self.late_now.next = self.owed.q.val();
@@ -186,12 +190,12 @@ impl Logic for SetChannel {
         if self.take.val() & self.open.val() {
             self.owed.d.next = self.takes_late.val();
         }
-        // No other result of another trigger gets in: what the channel does not have is 0.
+        // Clear the entry if this trigger has no result, so that an older result is never reported as new.
         self.is_own.next = self.took.q.val() & !self.open.val();
-        self.position_taken.reset.next =
-            self.take.val() & !self.is_own.val() & !self.late_now.val();
-        self.parity_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
-        self.status_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.empties.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.position_taken.reset.next = self.empties.val();
+        self.parity_taken.reset.next = self.empties.val();
+        self.status_taken.reset.next = self.empties.val();
         self.status.next = bit_cast::<16, 5>(self.cause.val())
             | (bit_cast::<16, 1>(self.position_valid.val().into()) << 6)
             | (bit_cast::<16, 1>(self.fresh.val().into()) << 7)
@@ -218,13 +222,14 @@ impl Logic for SetChannel {
             }
         }
 
-        // Told with the status byte; the bytes before it have gone out.
-        self.is_upset.reset.next = self.block.val() != self.number.val();
+        // Reported with the first status byte; the bytes before it have been sent.
+        self.is_other.next = self.block.val() != self.number.val();
+        self.is_upset.reset.next = self.is_other.val();
         self.is_upset.d.next = self.has_guards.val()
             & (self.position_taken.q.val().xor() ^ self.parity_taken.q.val())
             & (self.byte_at.val() == 6);
         // A reset by deselection alone takes no logic.
-        self.set_byte_held.reset.next = self.block.val() != self.number.val();
+        self.set_byte_held.reset.next = self.is_other.val();
         match self.byte_at.val().index() {
             0 => {
                 self.set_byte_held.d.next = self.position_taken.q.val().get_bits::<8>(0);
@@ -267,6 +272,7 @@ impl Logic for SetChannel {
             self.info_1[i].d.next = self.info_1[i].q.val();
             self.info_2[i].d.next = self.info_2[i].q.val();
             self.info_state[i].d.next = self.info_state[i].q.val();
+            // Came and good of each word, and due, which is the same for both.
             self.state_now[i].next = 0.into();
             if self.word_1[i].val().get_bit(24) {
                 self.state_now[i].next = self.state_now[i].val() | 1;
@@ -284,21 +290,17 @@ impl Logic for SetChannel {
                 self.state_now[i].next = self.state_now[i].val() | 16;
             }
             // They belong to the result, or there is none.
-            self.info_1[i].reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
-            self.info_2[i].reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
-            self.info_state[i].reset.next =
-                self.take.val() & !self.is_own.val() & !self.late_now.val();
+            self.info_1[i].reset.next = self.empties.val();
+            self.info_2[i].reset.next = self.empties.val();
+            self.info_state[i].reset.next = self.empties.val();
             if self.take.val() {
                 self.info_1[i].d.next = self.word_1[i].val().get_bits::<24>(0);
                 self.info_2[i].d.next = self.word_2[i].val().get_bits::<24>(0);
                 self.info_state[i].d.next = self.state_now[i].val();
             }
-            self.set_byte_held.reset.next =
-                (self.block.val() != self.number.val()) | self.second[i].val();
-            self.is_upset.reset.next =
-                (self.block.val() != self.number.val()) | self.second[i].val();
-            self.info_byte[i].reset.next =
-                (self.block.val() != self.number.val()) | !self.second[i].val();
+            self.set_byte_held.reset.next = self.is_other.val() | self.second[i].val();
+            self.is_upset.reset.next = self.is_other.val() | self.second[i].val();
+            self.info_byte[i].reset.next = self.is_other.val() | !self.second[i].val();
             match self.byte_at.val().index() {
                 0 => {
                     self.info_byte[i].d.next = self.info_1[i].q.val().get_bits::<8>(0);

@@ -29,7 +29,7 @@ pub struct RunChannel {
     pub result_strobe: Signal<In, Bit>,
     /// Number of results.
     pub sequence: Signal<In, Bits<16>>,
-    /// Moment of the position.
+    /// Time stamp of the position.
     pub first_fall_timestamp: Signal<In, Bits<32>>,
     /// The channel whose turn it is.
     pub turn: Signal<In, Bits<3>>,
@@ -37,7 +37,7 @@ pub struct RunChannel {
     pub ready: Signal<Out, Bit>,
     /// With `ready` the number of its result, else 0.
     pub ready_sequence: Signal<Out, Bits<16>>,
-    /// With `ready` its moment, else 0.
+    /// With `ready` its time stamp, else 0.
     pub ready_timestamp: Signal<Out, Bits<32>>,
     /// With `ready` the first byte of its set, else 0.
     pub ready_head: Signal<Out, Bits<8>>,

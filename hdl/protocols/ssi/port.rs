@@ -66,7 +66,7 @@ pub struct SsiPort {
     /// Strobe: a frame has ended.
     pub over: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
-    pub displaced: Signal<Out, Bit>,
+    pub trigger_lost: Signal<Out, Bit>,
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,

@@ -228,7 +228,7 @@ impl Logic for SpecialBits {
                     | (self.ones.q.val() ^ self.level.val() ^ self.parity_is_odd.val());
             }
             self.crc.d.next = self.crc_shifted.val();
-            // A CRC behind what it is of leaves nothing.
+            // Bits followed by their CRC leave 0.
             if self.has_crc.val() & (self.left.val() == self.crc_place.val()) {
                 self.is_wrong.d.next = self.is_wrong.q.val() | self.crc_shifted.val().any();
             }

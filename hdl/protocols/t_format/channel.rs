@@ -48,7 +48,7 @@ pub struct TFormatChannel {
     pub driver: Signal<Out, Bit>,
     /// An exchange is under way.
     pub busy: Signal<Out, Bit>,
-    /// What stands at the outputs of a receiver without registers.
+    /// Outputs of a receiver without registers.
     #[bundle]
     pub reading: ReadingOut,
     /// Synchroniser and filter of the line.

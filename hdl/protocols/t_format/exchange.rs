@@ -77,7 +77,7 @@ pub struct Exchange {
     pub status: Signal<In, Bits<8>>,
     /// What is to be sent is what was asked for; a request that does not fit is cut.
     pub request_fits: Signal<In, Bit>,
-    /// Stay with the verdict: `publish` and all that belongs to it stand still.
+    /// Stay with the verdict: `publish` and all that belongs to it do not change.
     pub hold: Signal<In, Bit>,
     /// Line to the encoder, from a register.
     pub tx: Signal<Out, Bit>,

@@ -12,7 +12,7 @@ pub struct Outcome {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: take what stands at the inputs.
+    /// Strobe: take the inputs.
     pub publish: Signal<In, Bit>,
     /// With `publish`: the reply is good.
     pub good: Signal<In, Bit>,
@@ -28,7 +28,7 @@ pub struct Outcome {
     /// What replies to a request bring.
     #[bundle]
     pub parts: ReplyPartsIn,
-    /// What stands at the outputs of a receiver without registers.
+    /// Outputs of a receiver without registers.
     #[bundle]
     pub reading: ReadingOut,
     /// High for one cycle when a new result can be read.
@@ -136,7 +136,7 @@ impl Logic for Outcome {
         self.reading.status.next = self.state.q.val();
         self.reading.crc.next = self.received.q.val();
         self.reading.reply_id.next = self.echo.q.val();
-        // Complaints and alarms stand in the status field; an alarm beside it would hide an upset.
+        // Complaints and alarms are in the status field; an alarm reported with an upset would hide it.
         self.alarm_flags.next = self.state.q.val().get_bits::<2>(4);
         if self.upset.q.val() {
             self.alarm_flags.next = 0.into();

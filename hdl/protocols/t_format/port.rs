@@ -63,7 +63,7 @@ pub struct TFormatPort {
     /// It was the host's.
     pub over_request: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
-    pub displaced: Signal<Out, Bit>,
+    pub trigger_lost: Signal<Out, Bit>,
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
@@ -321,16 +321,16 @@ impl Logic for TFormatPort {
         FieldBitsOut::join(&mut self.exchange.field, &mut self.reply.field);
     }
 
-    /// What the reply is worth.
+    /// Checks of the reply.
     fn judge(&mut self) {
-        // A trigger that was not taken is told by the result of the exchange under way, or of the next one.
+        // The result of the exchange under way, or of the next one, reports a trigger that was not taken.
         self.overrun.next = self.lost.q.val() & !self.is_own.val();
         if self.exchange.publish.val() & !self.is_own.val() {
             self.lost.d.next = false;
         }
         self.loses.next = self.trigger.val() & self.is_busy.val();
         self.is_lost.d.next = self.loses.val();
-        self.displaced.next = self.is_lost.q.val();
+        self.trigger_lost.next = self.is_lost.q.val();
         if self.loses.val() {
             self.lost.d.next = true;
         }
@@ -351,11 +351,11 @@ impl Logic for TFormatPort {
         self.good.next = self.exchange.good.val() & self.reply_fits.val();
         self.sum_flags.next = bit_cast::<16, 15>(self.exchange.flags.val().get_bits::<15>(0));
         if !self.reply_fits.val() {
-            // An alarm beside it would hide the upset.
+            // An alarm reported with an upset would hide it.
             self.sum_flags.next =
                 bit_cast::<16, 12>(self.exchange.flags.val().get_bits::<12>(0)) | 0x4000;
         }
-        // What else went wrong explains it.
+        // Any other fault explains the wrong parity.
         if self.exchange.flags.val().get_bits::<12>(0).any() {
             self.sum_flags.next =
                 bit_cast::<16, 15>(self.exchange.flags.val().get_bits::<15>(0) & 0x3FFF);
@@ -463,7 +463,7 @@ impl Logic for TFormatPort {
             }
             _ => {}
         }
-        // A word is one moment, however slowly its bytes are fetched.
+        // The word is latched, because its bytes are fetched one after the other.
         if self.host_read.val() {
             self.shown.d.next = self.chosen.val();
         }

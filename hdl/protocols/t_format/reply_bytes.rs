@@ -30,13 +30,13 @@ pub struct ReplyBytes {
     pub field: FieldBitsIn,
     /// All fields move on by a byte.
     pub copy: Signal<In, Bit>,
-    /// What comes behind the last of them.
+    /// Byte that enters after the last of them.
     pub tail: Signal<In, Bits<8>>,
     /// The first byte: the low one of the single-turn position, before they move.
     pub head: Signal<Out, Bits<8>>,
-    /// The byte behind it.
+    /// The byte following it.
     pub second: Signal<Out, Bits<8>>,
-    /// Status field, of which bits 7 to 4 are there only; stands still while bytes move.
+    /// Bits 7 to 4 of the status field; constant while bytes move.
     pub status: Signal<Out, Bits<8>>,
     /// Parity of the bits of the single-turn position that have come.
     pub single_parity: Signal<Out, Bit>,

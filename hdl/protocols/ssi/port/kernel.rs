@@ -16,7 +16,7 @@ impl Logic for SsiPort {
         self.time_clock();
         self.clock_frame();
         self.take_bits();
-        self.look_at_special_bits();
+        self.check_special_bits();
         self.recover();
         self.judge();
         self.show_result();
@@ -183,7 +183,7 @@ impl Logic for SsiPort {
     }
 
     /// The bits that are not position, if there are any.
-    fn look_at_special_bits(&mut self) {
+    fn check_special_bits(&mut self) {
         self.is_position.next = true;
         self.special_found.next = 0.into();
         self.shown.next = 0.into();
@@ -221,19 +221,19 @@ impl Logic for SsiPort {
             & self.good.val();
     }
 
-    /// What the frame is worth: a bit for each cause, in the order of their codes.
+    /// Checks of the frame: a bit for each cause, in the order of their codes.
     fn judge(&mut self) {
         self.busy.next = self.state.q.val() != self.at_rest.val();
         self.publishes.next = (self.state.q.val() == self.at_judge.val())
             & !(self.unknown.q.val() & self.not_low.q.val());
-        // A trigger that was not taken is told by the result of the frame under way, or of the next one.
+        // The result of the frame under way, or of the next one, reports a trigger that was not taken.
         if self.publishes.val() {
             self.lost.d.next = false;
             self.slow.d.next = false;
         }
         self.loses.next = self.trigger.val() & (self.state.q.val() != self.at_rest.val());
         self.is_lost.d.next = self.loses.val();
-        self.displaced.next = self.is_lost.q.val();
+        self.trigger_lost.next = self.is_lost.q.val();
         if self.loses.val() {
             self.lost.d.next = true;
         }

@@ -1,17 +1,17 @@
-//! Moments: results as the words that the processor reads, in RAM, of which one moment is held while others come.
+//! Result banks: results as the words that the processor reads, in RAM; one of them is held while others come.
 //!
 //! ```text
-//! verdict -> step 3, 4, .. 15, 0, 1, 2 -> byte = head, or what stood there -> RAM, bank `free`
+//! verdict -> step 3, 4, .. 15, 0, 1, 2 -> byte = head, or the one before -> RAM, bank `free`
 //!                                   \--> free becomes latest
 //! address 0 is read: latest becomes held
 //! ```
 //!
 //! A byte of step n is the low (n even) or high (n odd) one of word n / 2. Of the four banks three are in use: `held`, which the processor
 //! reads, `latest`, and `free`, which the next result is written to as a whole: what a reply does not bring is copied from `latest`, out of a
-//! second RAM that has nothing else to do. So a result changes at once, and a moment stands as long as the processor likes.
+//! second RAM that has nothing else to do. So a result changes at once, and is held as long as the processor needs it.
 //! <!-- with has_guards -->
 //!
-//! The parity of the positions, formed of the bits as they came, is compared when the moment is taken, in the clocks in which the
+//! The parity of the positions, formed of the bits as they came, is compared when the processor takes a result, in the clocks in which the
 //! processor still reads address 0, whose word is in no RAM: then words 1 to 4 are read.
 //! <!-- end -->
 
@@ -24,13 +24,13 @@ use rust_hdl::prelude::*;
 
 /// Words of results.
 #[derive(LogicBlock, Block)]
-#[properties("../../properties/moments.sv")]
-pub struct Moments {
+#[properties("../../properties/result_banks.sv")]
+pub struct ResultBanks {
     /// System clock.
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// An exchange has ended; what follows belongs to it, and stands still as long as `hold`.
+    /// An exchange has ended; what follows belongs to it, and does not change while `hold` is high.
     pub verdict: Signal<In, Bit>,
     /// Not all of it has been taken yet.
     pub hold: Signal<Out, Bit>,
@@ -51,11 +51,11 @@ pub struct Moments {
     pub parts: ReplyPartsIn,
     /// Next byte of the reply, see [`super::reply_bytes`].
     pub head: Signal<In, Bits<8>>,
-    /// The one behind it.
+    /// The one following it.
     pub second: Signal<In, Bits<8>>,
     /// Strobe: the bytes of the reply move on.
     pub copy: Signal<Out, Bit>,
-    /// What comes behind them.
+    /// Byte that follows them.
     pub tail: Signal<Out, Bits<8>>,
     /// Strobe: a new result can be read from the next cycle on.
     pub published: Signal<Out, Bit>,
@@ -69,7 +69,7 @@ pub struct Moments {
     pub request_id: Signal<In, Bits<4>>,
     /// An exchange is under way, bit 15 of address 7.
     pub busy: Signal<In, Bit>,
-    /// The word, two clocks behind `register`.
+    /// The word, two clocks after `register`.
     pub word: Signal<Out, Bits<16>>,
     /// Bytes that say how good the reply was.
     #[start]
@@ -163,7 +163,7 @@ pub struct Moments {
     /// Cause in the word of address 7.
     cause: Signal<Local, Bits<4>>,
     /// High if that cause explains a bad result: no upset is shown in its place.
-    is_told: Signal<Local, Bit>,
+    is_explained: Signal<Local, Bit>,
     /// High byte of the word at the RAM's output.
     high_byte: Signal<Local, Bits<8>>,
     /// Low byte of the word at the RAM's output.
@@ -172,17 +172,17 @@ pub struct Moments {
     has_guards: Constant<Bit>,
 }
 
-impl Moments {
-    /// Moments; `guards` look for upsets of what is stored.
+impl ResultBanks {
+    /// Banks; `guards` look for upsets of what is stored.
     pub fn new(guards: bool) -> Self {
-        Self::from_parts(MomentsParts {
+        Self::from_parts(ResultBanksParts {
             has_guards: Constant::new(guards),
         })
     }
 }
 
 #[kernel]
-impl Logic for Moments {
+impl Logic for ResultBanks {
     fn update(&mut self) {
         clock!(self, clock, low, high, known);
 
@@ -200,7 +200,7 @@ impl Logic for Moments {
         self.hold.next = !self.is_last.val() | self.clears.val();
         self.published.next = self.ends.val() & !self.clears.val();
 
-        // What is told about the reply comes behind its fields. EEPROM data, too, which are the same field as the kind of encoder.
+        // The bytes of the verdict follow the fields of the reply. So do EEPROM data, which are the same field as the kind of encoder.
         self.takes_single.next = self.good.val() & self.parts.has_single.val();
         self.takes_multi.next = self.good.val() & self.parts.has_multi.val();
         connect!(self.verdict_bytes <= self; good, flags, reply_id);
@@ -215,7 +215,7 @@ impl Logic for Moments {
                 self.tail.next = self.second.val();
             }
             if self.step.q.val().get_bit(1) {
-                self.tail.next = self.verdict_bytes.told.val();
+                self.tail.next = self.verdict_bytes.cause_byte.val();
             }
         }
         if self.step.q.val().get_bit(3) {
@@ -274,7 +274,7 @@ impl Logic for Moments {
             | (bit_cast::<5, 2>(self.free.q.val()) << 3);
         self.high.write_data.next = self.byte.val();
 
-        // The next one, or the one behind it.
+        // The next bank, or the one after it.
         self.after_latest.next = self.latest.q.val() + 1;
         self.next_free.next = self.after_latest.val();
         if self.after_latest.val() == self.held.q.val() {
@@ -302,7 +302,7 @@ impl Logic for Moments {
         }
         self.fresh.next = self.is_fresh.q.val();
 
-        // The moment that is read.
+        // The result that is read.
         self.is_first.next = self.reading.val() & !self.register.val().any();
         self.was_first.d.next = self.is_first.val();
         self.takes.next = self.is_first.val() & !self.was_first.q.val();
@@ -344,8 +344,8 @@ impl Logic for Moments {
         self.out_data.d.next =
             bit_cast::<16, 8>(self.low_byte.val()) | (bit_cast::<16, 8>(self.high_byte.val()) << 8);
         self.cause.next = self.high_byte.val().get_bits::<4>(0);
-        // Causes 1 to 12 explain it; an alarm beside it would hide the upset.
-        self.is_told.next = self.cause.val().any()
+        // Causes 1 to 12 explain it; an alarm reported with an upset would hide it.
+        self.is_explained.next = self.cause.val().any()
             & !(self.cause.val().get_bits::<2>(2).all() & self.cause.val().get_bits::<2>(0).any());
         match self.shown.q.val().index() {
             0 => {
@@ -367,7 +367,7 @@ impl Logic for Moments {
                         | (bit_cast::<16, 4>(self.cause.val()) << 8)
                         | (bit_cast::<16, 1>(self.high_byte.val().get_bits::<1>(6)) << 14)
                         | (bit_cast::<16, 1>(self.busy.val().into()) << 15);
-                    if !self.is_told.val() {
+                    if !self.is_explained.val() {
                         self.out_data.d.next = bit_cast::<16, 8>(self.low_byte.val())
                             | 0x0F00
                             | (bit_cast::<16, 1>(self.high_byte.val().get_bits::<1>(6)) << 14)
