@@ -21,7 +21,7 @@ use crate::protocols::ssi::asked::SsiSpec;
 use crate::protocols::ssi::port::SsiPort;
 use crate::protocols::t_format::port::TFormatPort;
 use crate::protocols::Spoken;
-use crate::several::each;
+use crate::replicate::each;
 use endat_regs::Protocol;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -200,7 +200,7 @@ impl EncoderPort {
         Self::of(vec![], others, vec![], vec![], has_io)
     }
 
-    /// The same for what is asked of a channel, as far as no setting says it.
+    /// The same for the parts of a channel's specification that are not settings.
     ///
     /// # Panics
     /// As [`Self::speaking`].

@@ -30,7 +30,7 @@ use crate::card::whole_result::WholeResult;
 use crate::config::CardConfig;
 use crate::encoder_port::EncoderPort;
 use crate::endat::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::Block;
 use rust_hdl::prelude::*;
 

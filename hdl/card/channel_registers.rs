@@ -13,7 +13,7 @@ use crate::card::config_ring::ConfigRing;
 use crate::config::CardConfig;
 use crate::ports::{FrameResultIn, PortSettingsOut};
 use crate::regs::config_words;
-use crate::several::each;
+use crate::replicate::each;
 use endat_macros::kernel;
 use rtl_design::reg::Reg;
 use rtl_design::Block;

@@ -7,7 +7,7 @@
 //! An event that comes in the cycle of its clear is not lost.
 
 use crate::regs::INTERRUPT;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with `access` and kept until
-//! `done`; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
+//! `done`; an access that comes before is not begun. Only which byte is shown follows the front: a front that changes the address reads another byte.
 //!
 //! Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them, and not from
 //! the first to the last result of a trigger: half of it is new, the other half is not.

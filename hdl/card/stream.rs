@@ -12,7 +12,7 @@
 //! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 
 use crate::card::ports::PushOut;
-use crate::several::each;
+use crate::replicate::each;
 use buffer::{FrameBuffer, SetParts};
 use endat_macros::kernel;
 use rtl_design::reg::Reg;

@@ -7,7 +7,7 @@
 //! strobe   ____________________________________/\_____
 //! ```
 //!
-//! A start bit that is high again at its middle was noise and is forgotten; a byte whose stop bit is low is
+//! A start bit that is high again at its middle was noise and is ignored; a byte whose stop bit is low is
 //! dropped and reported as `framing_error`. A line that stays low (break) gives one framing error, no bytes.
 
 use rtl_design::reg::{Reg, SyncReg};
@@ -303,7 +303,7 @@ mod tests {
         let mut uut = receiver(16);
         let mut levels = vec![true; 40];
         levels[10..15].fill(false);
-        // A byte right behind it is not spoilt.
+        // A byte directly after it is not spoilt.
         levels.truncate(24);
         levels.extend(line(&[0xa5], 16.0, 0.0));
         assert_eq!(receive(&mut uut, levels), (vec![0xa5], 0));

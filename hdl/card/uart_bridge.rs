@@ -6,7 +6,7 @@
 //! answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
 //! ```
 //!
-//! Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
+//! Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
 //! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
 //!
 //! Between answers it pushes the frames of a [`crate::card::stream::Stream`], each in one piece; an answer then begins with 0xFF.
@@ -138,7 +138,7 @@ pub struct UartBridge {
 }
 
 impl UartBridge {
-    /// A bridge with bits of `bit_cycles` system clock cycles that forgets a command after a pause of `timeout_us`.
+    /// A bridge with bits of `bit_cycles` system clock cycles that drops a command after a pause of `timeout_us`.
     pub fn new(bit_cycles: u64, timeout_us: u64) -> Self {
         Self::from_parts(UartBridgeParts {
             receiver: UartReceiver::new(bit_cycles),

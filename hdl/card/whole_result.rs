@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The outputs follow the result, but not from its publication until its frame is over: then they and the additional data change in one cycle. So
-//! whoever looks never mixes two frames, and none is waited for that never comes: each frame has an end. Frames that measure the delay and frames
+//! a reader never mixes two frames, and never waits for data that do not come: each frame has an end. Frames that measure the delay and frames
 //! of requests end without a result of their own, and change nothing.
 //!
 //! The stream does not wait so long for the position: it takes the result from the channel and the additional data, or that they are still due,
@@ -19,7 +19,7 @@
 
 use crate::ports::{AdditionalDataIn, FrameResultIn, FrameResultOut};
 use crate::regs::{BLOCK_STRIDE, INFO_FIRST, RESULT_BASE};
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;

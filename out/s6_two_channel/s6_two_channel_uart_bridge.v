@@ -10,7 +10,7 @@
 // read    02 len  a3 a2 a1 a0                                        04: all words from one address
 // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
 //
-// Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
+// Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
 // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
 //
 // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
@@ -73,7 +73,7 @@ module s6_two_channel_uart_bridge (
     // read    02 len  a3 a2 a1 a0                                        04: all words from one address
     // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
     //
-    // Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
+    // Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
     // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
     //
     // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.

@@ -17,7 +17,7 @@ use super::word_access::WordAccess;
 use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -142,7 +142,7 @@ impl Logic for AxiLiteFront {
             self.has_r.d.next = false;
         }
 
-        // An answer that nobody takes stops its own direction only. Of two that are ready, the direction that was not the last.
+        // A response that the master does not take stops its own direction only. If both directions are ready, they alternate.
         self.may_write.next = self.has_aw.q.val() & self.has_w.q.val() & !self.has_b.q.val();
         self.may_read.next = self.has_ar.q.val() & !self.has_r.q.val();
         self.goes_write.next = !self.busy.q.val()

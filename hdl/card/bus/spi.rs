@@ -17,7 +17,7 @@ use crate::card::stream::buffer::CRC16_POLYNOMIAL;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::endat::service::program::ServiceTimes;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;

@@ -1,7 +1,7 @@
 //! A card out of its configuration: how many of each block it has.
 
 use super::*;
-use crate::several::numbered;
+use crate::replicate::numbered;
 
 impl CardCore {
     /// A card.

@@ -8,7 +8,7 @@
 //! The words are held from the beginning of an answer on: a result that comes in between is in the next one.
 
 use super::RECORD_WORDS;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;

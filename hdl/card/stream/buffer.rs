@@ -14,7 +14,7 @@
 //!
 //! Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
 
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::memory::Memory;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};

@@ -15,7 +15,7 @@
 //! <!-- end -->
 
 use super::buffer::SetParts;
-use crate::several::each;
+use crate::replicate::each;
 use endat_regs::Protocol;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};

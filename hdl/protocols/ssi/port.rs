@@ -139,7 +139,7 @@ pub struct SsiPort {
     is_last: Signal<Local, Bit>,
     /// High for one cycle when a bit is taken.
     takes_bit: Signal<Local, Bit>,
-    /// Bits of a copy, parity and special bits included.
+    /// Bits of a copy, with those that are not position.
     bits: Signal<Local, Bits<6>>,
     /// High if the bit belongs to the position, or is its parity bit.
     is_position: Signal<Local, Bit>,
@@ -207,7 +207,7 @@ const STATE_RECOVERY: u64 = 9;
 const STATE_JUDGE: u64 = 10;
 
 impl SsiPort {
-    /// For what is asked, as far as no setting says it: special bits, and how a frame ends; `guards` look for upsets of stored bits.
+    /// For the parts of `asked` that are not settings: special bits, and the end of a frame; `guards` detect upsets of stored bits.
     pub fn new(asked: &SsiSpec, guards: bool) -> Self {
         let special: Vec<SpecialBits> = match asked.has_specials() {
             true => vec![SpecialBits::new(&asked.before, &asked.after, guards)],

@@ -71,7 +71,7 @@ pub struct Reading {
     pub single_turn: Bits<24>,
     /// There is one.
     pub single_valid: Bit,
-    /// Parity of `single_turn` as it came, and of `single_valid`; whoever shows them compares.
+    /// Parity of `single_turn` as it came, and of `single_valid`; compared where they are shown.
     pub single_parity: Bit,
     /// Last good multi-turn position.
     pub multi_turn: Bits<24>,

@@ -37,7 +37,7 @@ impl Logic for SsiPort {
         }
     }
 
-    /// The clock, and whose turn it is.
+    /// The clock and the states.
     fn clock_frame(&mut self) {
         self.bits.next = self.position_bits.val();
         if self.frame.val().get_bit(3) {
@@ -118,7 +118,7 @@ impl Logic for SsiPort {
         }
     }
 
-    /// What the line says at each rising edge of the clock but the first of a copy, most significant bit first.
+    /// Samples DATA at each rising edge of the clock but the first of a copy, most significant bit first.
     fn take_bits(&mut self) {
         self.takes_bit.next =
             (self.state.q.val() == self.at_low.val()) & self.is_due.val() & !self.first.q.val();
