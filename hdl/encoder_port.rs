@@ -21,7 +21,7 @@ use crate::protocols::ssi::asked::SsiSpec;
 use crate::protocols::ssi::port::SsiPort;
 use crate::protocols::t_format::port::TFormatPort;
 use crate::protocols::Spoken;
-use crate::several::each;
+use crate::replicate::each;
 use endat_regs::Protocol;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -65,7 +65,7 @@ pub struct EncoderPort {
     /// DATA is HIGH, and no frame is on the wire.
     pub line_high: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
-    pub displaced: Signal<Out, Bit>,
+    pub trigger_lost: Signal<Out, Bit>,
     /// A frame, triggered or not, has ended.
     #[bundle]
     pub end: FrameEndOut,
@@ -80,10 +80,10 @@ pub struct EncoderPort {
     pub sample_strobe: Signal<Out, Bit>,
     /// The service's alarm: too many bad frames, or positions 1 and 2 apart; or that of the line: drift or edges beyond their limits.
     pub alarm: Signal<Out, Bit>,
-    /// The host's way to words behind a port.
+    /// The host's access to the words of a port.
     #[bundle]
     pub window: HostWindowIn,
-    /// Port of the service that the program reads or writes; only where the service stands elsewhere, as the next four.
+    /// Port of the service that the program reads or writes; only if the service is outside this port, as the next four.
     pub io_address: Vec<Signal<In, Bits<5>>>,
     /// Strobe: it is read.
     pub io_read: Vec<Signal<In, Bit>>,
@@ -93,14 +93,23 @@ pub struct EncoderPort {
     pub io_out: Vec<Signal<In, Bits<16>>>,
     /// Strobe: it is written to the port.
     pub io_write: Vec<Signal<In, Bit>>,
+    /// EnDat channel; none for another protocol.
     channel: Vec<Channel>,
+    /// T-format port, if the encoder speaks T-format.
     t_format: Vec<TFormatPort>,
+    /// SSI port, if the encoder speaks SSI.
     ssi: Vec<SsiPort>,
+    /// Connection of the channel to a service.
     served: Vec<ServiceChannel>,
+    /// The port's own service.
     service: Vec<Service>,
+    /// Line monitor.
     monitor: Vec<LineMonitor>,
+    /// Cause of a lost trigger; it comes with a good position.
     trigger_overrun: Constant<Bits<5>>,
+    /// Cause of missing additional data; it comes with a good position.
     info_missing: Constant<Bits<5>>,
+    /// Cause of a recovery time that was too short; it comes with a good position.
     recovery_too_short: Constant<Bits<5>>,
     _channels: usize,
     _t_formats: usize,
@@ -115,7 +124,9 @@ pub struct EncoderPort {
 /// The port of another protocol than EnDat, if it is one.
 #[derive(Default)]
 struct Others {
+    /// T-format port, if the encoder speaks T-format.
     t_format: Vec<TFormatPort>,
+    /// SSI port, if the encoder speaks SSI.
     ssi: Vec<SsiPort>,
 }
 
@@ -150,7 +161,7 @@ impl EncoderPort {
         }
     }
 
-    /// The same for a service that stands elsewhere, at the `io_` ports.
+    /// The same for a service outside this port, at the `io_` ports.
     pub fn served(
         times: FixedTimes,
         service: Option<&ServiceTimes>,
@@ -175,7 +186,7 @@ impl EncoderPort {
         )
     }
 
-    /// A port for an encoder that speaks another protocol than EnDat. `has_io`: beside it is a service, of which it has nothing.
+    /// A port for an encoder that speaks another protocol than EnDat. `has_io`: it is next to a service that it does not use.
     ///
     /// # Panics
     /// For EnDat, whose ports have settings of their own.
@@ -189,7 +200,7 @@ impl EncoderPort {
         Self::of(vec![], others, vec![], vec![], has_io)
     }
 
-    /// The same for what is asked of a channel, as far as no setting says it.
+    /// The same for the parts of a channel's specification that are not settings.
     ///
     /// # Panics
     /// As [`Self::speaking`].
@@ -267,7 +278,8 @@ impl Logic for EncoderPort {
             FrameEndOut::link(&mut self.end, &mut self.channel[i].end);
             AdditionalDataOut::link(&mut self.record, &mut self.channel[i].record);
             connect!(self <= self.channel[i];
-                recovery_cycles, delay_cycles, busy, request_runs, line_high, displaced, reply,
+                recovery_cycles, delay_cycles, busy, request_runs, line_high,
+                trigger_lost = displaced, reply,
                 calibrated, sample_strobe
             );
         }
@@ -288,7 +300,7 @@ impl Logic for EncoderPort {
             FrameResultOut::link(&mut self.result, &mut self.t_format[i].result);
             connect!(self.line <= self.t_format[i]; data_o, data_oe);
             connect!(self.end <= self.t_format[i]; over, over_request);
-            connect!(self <= self.t_format[i]; busy, displaced);
+            connect!(self <= self.t_format[i]; busy, trigger_lost);
             self.window.host_word.next = self.t_format[i].host_word.val();
         }
         for i in 0..self._ssis {
@@ -305,7 +317,7 @@ impl Logic for EncoderPort {
             self.line.data_oe.next = false;
             self.end.over.next = self.ssi[i].over.val();
             self.end.over_request.next = false;
-            connect!(self <= self.ssi[i]; busy, displaced);
+            connect!(self <= self.ssi[i]; busy, trigger_lost);
         }
         for i in 0..self._served {
             connect!(self.served[i] <= self; clock, reset);

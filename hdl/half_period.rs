@@ -37,16 +37,24 @@ pub struct HalfPeriod {
     pub tick: Signal<Out, Bit>,
     /// Cycles until `tick` and one more: 1 with `tick`.
     pub left_cycles: Signal<Out, Bits<10>>,
+    /// Cycles of the half under way, plus 2; compared one cycle ahead.
     #[start(2.into())]
     count: Reg<Bits<10>>,
+    /// High in the last cycle of a half, unless it is a longer second half.
     hit: Reg<Bit>,
-    /// The period has an odd number of cycles.
+    /// High if the period has an odd number of cycles.
     is_odd: Reg<Bit>,
+    /// High one cycle after `hit`: last cycle of a second half that is one cycle longer.
     hit_late: Reg<Bit>,
+    /// Length of a half, in system clock cycles, rounded down.
     half_cycles: Signal<Local, Bits<10>>,
+    /// High in the last cycle of the half.
     tick_now: Signal<Local, Bit>,
+    /// High if a half is a single cycle.
     is_one: Signal<Local, Bit>,
+    /// 1 if `began` can come with halves of two cycles.
     has_snap: Constant<Bit>,
+    /// 1 if halves of a single cycle are supported.
     has_one: Constant<Bit>,
 }
 

@@ -36,35 +36,61 @@ pub struct InputFilter {
     pub level_first: Signal<Out, Bit>,
     /// High in the first cycle in which `level` is high, or has changed.
     pub edge_strobe: Signal<Out, Bit>,
-    /// This edge stands between `level_first` and `level`, not before both.
+    /// This edge is between `level_first` and `level`, not before both.
     pub edge_second: Signal<Out, Bit>,
     /// Strobe: a pulse has been removed.
     pub glitch: Signal<Out, Bit>,
+    /// Pin, first synchroniser stage.
     sync1: SyncReg<Bit>,
+    /// Pin, second synchroniser stage.
     sync2: SyncReg<Bit>,
+    /// Pin, third synchroniser stage.
     sync3: SyncReg<Bit>,
+    /// Pin at the falling clock edge.
     fall1: Vec<FallReg<Bit>>,
+    /// Sample of the falling edge, first stage at the rising edge.
     fall2: Vec<SyncReg<Bit>>,
+    /// Sample of the falling edge, second stage.
     fall3: Vec<SyncReg<Bit>>,
+    /// Sample of the falling edge, third stage: half a cycle older than `sync3`.
     fall4: Vec<SyncReg<Bit>>,
+    /// Sample of one cycle ago, for the majority.
     earlier: Reg<Bit>,
+    /// Sample of two cycles ago; with two samples a cycle the one half a cycle before `earlier`.
     earlier_first: Reg<Bit>,
+    /// Consecutive samples that differ from the filtered level; 0 when one agrees with it.
     different: Reg<Bits<5>>,
-    level_now: Reg<Bit>,
-    first_now: Reg<Bit>,
-    edge_now: Reg<Bit>,
-    second_now: Reg<Bit>,
+    /// Level after the filter.
+    filtered: Reg<Bit>,
+    /// Level after the filter, half a cycle before `filtered`; 0 unless there are two samples a cycle.
+    filtered_first: Reg<Bit>,
+    /// High for one cycle when the filtered level has risen; with `both_edges` also when it has fallen.
+    edge_found: Reg<Bit>,
+    /// With `edge_found`: the edge is between the two samples of the cycle, not before both.
+    edge_is_second: Reg<Bit>,
+    /// High for one cycle when the filter has removed a pulse.
     removed: Reg<Bit>,
+    /// 1 if majority, edges of both directions and removed pulses are available.
     has_alignment: Constant<Bit>,
+    /// 1 if the pin is sampled at both clock edges.
     has_double: Constant<Bit>,
+    /// Samples in a row that the filter ignores.
     limit: Signal<Local, Bits<5>>,
+    /// First sample of the cycle, as it comes from the synchroniser.
     first: Signal<Local, Bit>,
+    /// First sample of the cycle, after the majority.
     sample_first: Signal<Local, Bit>,
+    /// Sample of the cycle, after the majority; with two samples a cycle the second one.
     sample: Signal<Local, Bit>,
+    /// Filtered level between the two samples of the cycle.
     middle: Signal<Local, Bit>,
+    /// `different` between the two samples of the cycle.
     middle_different: Signal<Local, Bits<5>>,
+    /// Filtered level after this cycle.
     settled: Signal<Local, Bit>,
+    /// High if falling edges count, too.
     both: Signal<Local, Bit>,
+    /// High if an edge is before both samples of the cycle.
     edge_first: Signal<Local, Bit>,
     _doubles: usize,
 }
@@ -132,14 +158,14 @@ impl Logic for InputFilter {
 
         // One step of the filter, or two.
         self.limit.next = bit_cast::<5, 4>(self.filter_cycles.val());
-        self.middle.next = self.level_now.q.val();
+        self.middle.next = self.filtered.q.val();
         self.middle_different.next = self.different.q.val();
         self.removed.d.next = false;
         if self.has_double.val() {
             self.limit.next = (bit_cast::<5, 4>(self.filter_cycles.val()) << 1)
                 | bit_cast::<5, 1>(self.filter_half.val().into());
             self.middle_different.next = 0.into();
-            if self.sample_first.val() != self.level_now.q.val() {
+            if self.sample_first.val() != self.filtered.q.val() {
                 if self.different.q.val() == self.limit.val() {
                     self.middle.next = self.sample_first.val();
                 } else {
@@ -168,20 +194,20 @@ impl Logic for InputFilter {
         if !self.has_alignment.val() {
             self.removed.d.next = false;
         }
-        self.first_now.d.next = self.middle.val() & self.has_double.val();
-        self.level_now.d.next = self.settled.val();
+        self.filtered_first.d.next = self.middle.val() & self.has_double.val();
+        self.filtered.d.next = self.settled.val();
 
         self.both.next = self.has_alignment.val() & self.both_edges.val();
-        self.edge_first.next = (self.middle.val() & !self.level_now.q.val())
-            | (self.both.val() & !self.middle.val() & self.level_now.q.val());
-        self.edge_now.d.next = self.edge_first.val()
+        self.edge_first.next = (self.middle.val() & !self.filtered.q.val())
+            | (self.both.val() & !self.middle.val() & self.filtered.q.val());
+        self.edge_found.d.next = self.edge_first.val()
             | (self.settled.val() & !self.middle.val())
             | (self.both.val() & !self.settled.val() & self.middle.val());
-        self.second_now.d.next = !self.edge_first.val() & self.has_double.val();
-        self.level.next = self.level_now.q.val();
-        self.level_first.next = self.first_now.q.val();
-        self.edge_strobe.next = self.edge_now.q.val();
-        self.edge_second.next = self.second_now.q.val();
+        self.edge_is_second.d.next = !self.edge_first.val() & self.has_double.val();
+        self.level.next = self.filtered.q.val();
+        self.level_first.next = self.filtered_first.q.val();
+        self.edge_strobe.next = self.edge_found.q.val();
+        self.edge_second.next = self.edge_is_second.q.val();
         self.glitch.next = self.removed.q.val();
     }
 }

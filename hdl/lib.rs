@@ -18,10 +18,10 @@ pub mod input_filter;
 pub mod lowest_cause;
 pub mod ports;
 pub use endat_regs::protocol;
+pub mod protected_bit;
 pub mod protocols;
 pub mod regs;
-mod several;
+mod replicate;
 pub mod snapshot;
-pub mod sure_bit;
 #[cfg(test)]
 mod testing;

@@ -144,7 +144,7 @@ pub struct Line {
     pub data_i: Bit,
 }
 
-/// The host's way to words behind a port.
+/// The host's access to the words of a port.
 #[ports]
 pub struct HostWindow {
     /// Word of the service's RAM, or of the T-format port, that the host accesses; stays put from one strobe to the next, 8 cycles at least.

@@ -1,4 +1,4 @@
-//! The protocols that a channel may speak. Each is a folder; beside it this file, and its place in
+//! The protocols that a channel may speak. Each is a folder; in addition it has this file, and its place in
 //! [`EncoderPort`](crate::encoder_port::EncoderPort), are all of this crate that knows it by name.
 
 pub mod ssi;

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! publish    __/\__________________    position, time stamp and what checks them change places with those before
-//! confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
-//! withdraw   ____________/\________    or: it has not; what was before comes back
+//! confirm    ____________/\________    the frame has ended as it should: the result before is discarded
+//! withdraw   ____________/\________    or it has not: the result before comes back
 //! ```
 //!
 //! <!-- without restores -->
@@ -59,50 +59,95 @@ pub struct Snapshot {
     pub result: FrameResultOut,
     /// Strobe: what gave the position takes the one that is held in its place.
     pub swap: Signal<Out, Bit>,
+    /// High for one cycle when a new result can be read.
     strobe: Reg<Bit>,
+    /// High in the first cycle after a good position has been loaded: its parity is taken then.
     loaded: Reg<Bit>,
+    /// Published position.
     held: Reg<Bits<48>>,
+    /// CRC that came with the published position.
     held_crc: Reg<Bits<5>>,
+    /// Width of the published position.
     held_width: Reg<Bits<6>>,
+    /// High if the published position came with F2.
     held_f2: Reg<Bit>,
+    /// Position before the published one, until the new one is confirmed.
     earlier: Reg<Bits<48>>,
+    /// CRC of the position before.
     earlier_crc: Reg<Bits<5>>,
+    /// Width of the position before.
     earlier_width: Reg<Bits<6>>,
+    /// High if the position before came with F2.
     earlier_f2: Reg<Bit>,
+    /// High if there was a valid position before.
     earlier_valid: Reg<Bit>,
+    /// Parity of the position before.
     earlier_parity: Reg<Bit>,
+    /// High from a good result until its frame is confirmed or withdrawn.
     unconfirmed: Reg<Bit>,
+    /// Parity of the published position, taken when it was loaded.
     parity: Reg<Bit>,
+    /// High for one cycle after the pending time stamp was taken; its parity is stored then.
     timed: Reg<Bit>,
-    moment_parity: Reg<Bit>,
-    moment_sum: Reg<Bit>,
+    /// Parity of the pending time stamp, stored when it was taken.
+    pending_parity: Reg<Bit>,
+    /// Parity of the pending time stamp as it was in the cycle before.
+    pending_sum: Reg<Bit>,
+    /// High if the published position or its time stamp differed from its parity in the cycle before.
     is_upset: Reg<Bit>,
+    /// High while a position is published that can be used.
     valid: Reg<Bit>,
+    /// High if the last result brought a good position.
     is_fresh: Reg<Bit>,
+    /// Number of results, wrapping.
     count: Reg<Bits<16>>,
-    moment: Reg<Bits<32>>,
+    /// Time stamp of the frame under way; from a result to the end of its frame that of the position before.
+    stamp_pending: Reg<Bits<32>>,
+    /// Time stamp of the published position.
     stamp: Reg<Bits<32>>,
+    /// Age of the position in microseconds, up to 65535.
     age: Reg<Bits<16>>,
+    /// High when the age has reached 65535.
     age_full: Reg<Bit>,
+    /// Primary cause of the last result, or of a fault after it.
     cause_held: Reg<Bits<5>>,
+    /// Raw flags of the last result, or of a fault after it.
     flags_held: Reg<Bits<20>>,
+    /// CRC received with the last result.
     received: Reg<Bits<5>>,
+    /// CRC computed for the last result.
     computed: Reg<Bits<5>>,
+    /// High for one cycle when a good position is published.
     take_good: Signal<Local, Bit>,
+    /// High for one cycle when the published position is withdrawn.
     take_back: Signal<Local, Bit>,
+    /// Parity of the published time stamp as it is stored now.
     stamp_sum: Signal<Local, Bit>,
+    /// Parity of the published position, with its CRC, width, F2 and time stamp, as stored now.
     parity_now: Signal<Local, Bit>,
+    /// High if an upset makes the published position invalid in this cycle.
     upset_now: Signal<Local, Bit>,
-    moment_wrong: Signal<Local, Bit>,
+    /// High if the pending time stamp differs from its parity when a good position comes.
+    pending_wrong: Signal<Local, Bit>,
+    /// Cycles since the position was taken: the line delay if the encoder took it by itself, else 0.
     ago: Signal<Local, Bits<11>>,
+    /// Age that is shown: 0 while the position is not confirmed and can come back.
     age_now: Signal<Local, Bits<16>>,
+    /// 1 if stored positions are checked against their parity.
     has_guards: Constant<Bit>,
+    /// 1 if a withdrawn position gives way to the one before.
     restores: Constant<Bit>,
+    /// 1 if the source of the position keeps the one before, in exchange.
     swaps: Constant<Bit>,
+    /// 1 if the position before is kept here.
     keeps: Constant<Bit>,
+    /// 1 if positions are never withdrawn.
     never_withdraws: Constant<Bit>,
+    /// 1 if each position can be withdrawn until the next result.
     never_confirms: Constant<Bit>,
+    /// Cause of an upset in the stored position.
     upset_cause: Constant<Bits<5>>,
+    /// Raw flag of an upset in the stored position.
     upset_flag: Constant<Bits<20>>,
 }
 
@@ -146,28 +191,28 @@ impl Logic for Snapshot {
         // The time stamp waits for its position as long as a frame lasts: a guard looks at it, too.
         self.timed.d.next = self.first_fall.val() | self.latched.val();
         if self.timed.q.val() {
-            self.moment_parity.d.next = self.moment.q.val().xor();
+            self.pending_parity.d.next = self.stamp_pending.q.val().xor();
         }
-        // Of the cycle before: the sum of all its bits is too long a way to what loads.
-        self.moment_sum.d.next = self.moment.q.val().xor();
-        self.moment_wrong.next = self.has_guards.val()
+        // Parity is registered one cycle early: a 32-bit XOR in the load path would miss timing.
+        self.pending_sum.d.next = self.stamp_pending.q.val().xor();
+        self.pending_wrong.next = self.has_guards.val()
             & self.told.good.val()
             & !self.timed.q.val()
-            & (self.moment_sum.q.val() ^ self.moment_parity.q.val());
+            & (self.pending_sum.q.val() ^ self.pending_parity.q.val());
         self.take_good.next =
-            self.told.publish.val() & self.told.good.val() & !self.moment_wrong.val();
+            self.told.publish.val() & self.told.good.val() & !self.pending_wrong.val();
         self.take_back.next =
             self.told.withdraw.val() & (self.unconfirmed.q.val() | self.never_confirms.val());
         self.ago.next = 0.into();
         if self.latched.val() {
             self.ago.next = self.delay_cycles.val();
         }
-        // Between a result and the end of its frame `moment` keeps the time stamp of the position before.
+        // Between a result and the end of its frame `stamp_pending` keeps the time stamp of the position before.
         if self.restores.val() & self.take_good.val() {
-            self.moment.d.next = self.stamp.q.val();
+            self.stamp_pending.d.next = self.stamp.q.val();
         }
         if self.first_fall.val() | self.latched.val() {
-            self.moment.d.next = self.timestamp.val() - bit_cast::<32, 11>(self.ago.val());
+            self.stamp_pending.d.next = self.timestamp.val() - bit_cast::<32, 11>(self.ago.val());
         }
         // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look young.
         self.age_full.d.next = self.age.q.val().all();
@@ -186,7 +231,7 @@ impl Logic for Snapshot {
         }
         self.strobe.d.next = self.told.publish.val();
         if self.told.publish.val() {
-            self.is_fresh.d.next = self.told.good.val() & !self.moment_wrong.val();
+            self.is_fresh.d.next = self.told.good.val() & !self.pending_wrong.val();
             self.count.d.next = self.count.q.val() + 1;
             self.received.d.next = self.crc_received_in.val();
             self.computed.d.next = self.crc_computed_in.val();
@@ -197,7 +242,7 @@ impl Logic for Snapshot {
             self.held_crc.d.next = self.crc_received_in.val();
             self.held_width.d.next = self.width_in.val();
             self.held_f2.d.next = self.has_f2_in.val();
-            self.stamp.d.next = self.moment.q.val();
+            self.stamp.d.next = self.stamp_pending.q.val();
             self.valid.d.next = true;
             if self.restores.val() {
                 if self.keeps.val() {
@@ -219,8 +264,8 @@ impl Logic for Snapshot {
             self.unconfirmed.d.next = true;
         }
 
-        // The guard. Its first look is at what has just been loaded: the position from where the CRC was checked, the time stamp from where its
-        // parity was, but for the last cycle.
+        // The guard. In the first cycle it checks the time stamp that has just been loaded against the parity of the pending one; the CRC has
+        // checked the position.
         self.stamp_sum.next = self.stamp.q.val().xor();
         self.parity_now.next = self.held.q.val().xor()
             ^ self.stamp_sum.val()
@@ -234,7 +279,7 @@ impl Logic for Snapshot {
             & !self.take_back.val();
         if self.has_guards.val() & self.loaded.q.val() {
             self.parity.d.next = self.parity_now.val();
-            self.is_upset.d.next = self.stamp_sum.val() ^ self.moment_parity.q.val();
+            self.is_upset.d.next = self.stamp_sum.val() ^ self.pending_parity.q.val();
         }
         if self.take_back.val() {
             if self.restores.val() {
@@ -246,7 +291,7 @@ impl Logic for Snapshot {
                 }
                 self.held_width.d.next = self.earlier_width.q.val();
                 self.held_f2.d.next = self.earlier_f2.q.val();
-                self.stamp.d.next = self.moment.q.val();
+                self.stamp.d.next = self.stamp_pending.q.val();
                 self.valid.d.next = self.earlier_valid.q.val();
                 if self.has_guards.val() {
                     self.parity.d.next = self.earlier_parity.q.val();
@@ -267,7 +312,7 @@ impl Logic for Snapshot {
             self.cause_held.d.next = self.upset_cause.val();
             self.flags_held.d.next = self.flags_held.q.val() | self.upset_flag.val();
         }
-        if self.told.publish.val() & self.moment_wrong.val() {
+        if self.told.publish.val() & self.pending_wrong.val() {
             self.cause_held.d.next = self.upset_cause.val();
             self.flags_held.d.next = self.told.flags_told.val() | self.upset_flag.val();
         }

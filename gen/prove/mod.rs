@@ -57,7 +57,7 @@ const PARTS: [&str; 10] = [
     "InputFilter",
     "WordAccess",
     "Interrupt",
-    "Moments",
+    "ResultBanks",
 ];
 
 /// Cycles before the one that an induction step is about.

@@ -4,8 +4,8 @@
 //! bus pins <-> front (ApbFront, ...) <-> WordAccess <-> CardCore <-> trigger_i, endat_*, led_*
 //! ```
 //!
-//! A front knows its bus and nothing of registers; [`word_access`] turns one word of it into the bank's bytes and decides which
-//! words belong to one moment. See `docs/bus.md`.
+//! A front handles its bus and no registers; [`word_access`] turns one word of it into the bank's bytes and decides which
+//! words belong to one snapshot. See `docs/bus.md`.
 
 pub mod ahb_lite;
 pub mod apb;
@@ -16,7 +16,7 @@ pub mod strobes;
 pub mod wishbone;
 pub mod word_access;
 
-/// What stands between the registers and the host.
+/// Connection between the registers and the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HostBus {
     /// UART in the UARTBone format.
@@ -38,7 +38,7 @@ pub enum HostBus {
     Bare,
 }
 
-/// What there is to know of a bus.
+/// Facts of a bus.
 #[derive(Clone, Copy, Debug)]
 pub struct BusRow {
     /// Name in a configuration.
@@ -54,7 +54,7 @@ pub struct BusRow {
 pub enum Place {
     /// To pins of a board.
     Pins,
-    /// They stay inside the chip, behind addresses of a system.
+    /// They stay inside the chip, at addresses of a system.
     System,
     /// They stay inside the chip, without addresses.
     Inside,
@@ -65,7 +65,7 @@ const fn row(name: &'static str, means: &'static str, place: Place) -> BusRow {
 }
 
 impl HostBus {
-    /// All of them.
+    /// Every bus, in the order of the documentation.
     pub const ALL: [Self; 8] = [
         Self::Uart,
         Self::Apb,
@@ -77,7 +77,7 @@ impl HostBus {
         Self::Bare,
     ];
 
-    /// What there is to know of it.
+    /// Its facts.
     pub const fn row(self) -> BusRow {
         use Place::{Inside, Pins, System};
         match self {

@@ -30,7 +30,7 @@ use crate::card::whole_result::WholeResult;
 use crate::config::CardConfig;
 use crate::encoder_port::EncoderPort;
 use crate::endat::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::Block;
 use rust_hdl::prelude::*;
 
@@ -90,62 +90,118 @@ pub struct CardCore {
     pub led_status_o: Signal<Out, Bit>,
     /// The channel's last result is a good position.
     pub led_channel_o: Vec<Signal<Out, Bit>>,
+    /// Microsecond strobe and time.
     timebase: Timebase,
+    /// Trigger sources of the card.
     #[start]
     trigger: Trigger,
+    /// Trigger of each channel, where channels have their own.
     own_trigger: Vec<ChannelTrigger>,
+    /// Trigger of each channel.
     trigger_of: Vec<Signal<Local, Bit>>,
+    /// High if the channel takes no trigger.
     is_off: Vec<Signal<Local, Bit>>,
+    /// Register bank.
     bank: RegisterBank,
+    /// Registers of each channel.
     registers: Vec<ChannelRegisters>,
+    /// Encoder port of each channel.
     port: Vec<EncoderPort>,
+    /// Result with additional data, of each channel that has them.
     whole: Vec<WholeResult>,
+    /// Read byte of the additional data, from the last channel down to the first.
     info_byte: Vec<Signal<Local, Bits<8>>>,
+    /// High if additional data of one of these channels may still come.
     set_open: Vec<Signal<Local, Bit>>,
+    /// Services, each for two channels.
     service: Vec<Service>,
+    /// Stream, if the card has one.
     stream: Vec<Stream>,
+    /// Place of each channel in a set of the stream.
     set: Vec<SetChannel>,
+    /// Byte of the set, from the last channel down to the first.
     set_byte: Vec<Signal<Local, Bits<8>>>,
+    /// High if one of these channels has not brought its result yet.
     set_owes: Vec<Signal<Local, Bit>>,
+    /// High if the result of one of these channels has been replaced.
     set_replaced: Vec<Signal<Local, Bit>>,
+    /// High for one cycle when a set is closed.
     set_taken: Vec<Signal<Local, Bit>>,
+    /// Block of the set that is asked for.
     set_block: Vec<Signal<Local, Bits<4>>>,
+    /// Byte of that block.
     set_byte_at: Vec<Signal<Local, Bits<3>>>,
+    /// Running clock of each channel.
     run: Vec<RunChannel>,
+    /// High if a position of a running clock waits, from the last channel down to the first.
     run_ready: Vec<Signal<Local, Bit>>,
+    /// Number of its result.
     run_sequence: Vec<Signal<Local, Bits<16>>>,
-    run_moment: Vec<Signal<Local, Bits<32>>>,
+    /// Its time stamp.
+    run_timestamp: Vec<Signal<Local, Bits<32>>>,
+    /// First byte of its set.
     run_head: Vec<Signal<Local, Bits<8>>>,
+    /// Place of its channel in a set.
     run_place: Vec<Signal<Local, Bits<7>>>,
+    /// High if one of these channels has lost a position.
     run_lost: Vec<Signal<Local, Bit>>,
+    /// Direct outputs of each channel.
     direct: Vec<DirectOutput>,
+    /// Interrupt, if the card has one.
     interrupt: Vec<Interrupt>,
+    /// Read byte of the direct outputs, from the last channel down to the first.
     direct_byte: Vec<Signal<Local, Bits<8>>>,
+    /// Read bytes of stream, interrupt and additional data.
     part_byte: Vec<Signal<Local, Bits<8>>>,
+    /// Recovery counter of each channel.
     recovery: Vec<RecoveryCounter>,
+    /// Read byte of the recovery counters, from the last channel down to the first.
     recovery_byte: Vec<Signal<Local, Bits<8>>>,
+    /// Second interface, if the card has one.
     second: Vec<SecondInterface>,
+    /// Record of each channel for the second interface.
     record: Vec<SecondRecord>,
+    /// Word of the record, from the last channel down to the first.
     record_link: Vec<Signal<Local, Bits<32>>>,
+    /// High for one cycle when the host writes a word.
     part_write: Signal<Local, Bit>,
+    /// Configuration byte between two channels on the ring.
     ring_link: Vec<Signal<Local, Bits<9>>>,
+    /// Read byte of the channels, from the first to the last.
     read_link: Vec<Signal<Local, Bits<8>>>,
+    /// Read word of the ports, from the first channel to the last.
     service_link: Vec<Signal<Local, Bits<32>>>,
+    /// Read word of each channel's port; 0 unless the channel is selected.
     selected: Vec<Signal<Local, Bits<32>>>,
+    /// Port address of the service program, per channel.
     io_address: Vec<Signal<Local, Bits<5>>>,
+    /// High for one cycle when the service program reads a port.
     io_read: Vec<Signal<Local, Bit>>,
+    /// Word that the service program reads.
     io_in: Vec<Signal<Local, Bits<16>>>,
+    /// Word that the service program writes.
     io_out: Vec<Signal<Local, Bits<16>>>,
+    /// High for one cycle when the service program writes a port.
     io_write: Vec<Signal<Local, Bit>>,
+    /// Read word of ports and services, from the first service to the last.
     word_link: Vec<Signal<Local, Bits<32>>>,
+    /// High if the accessed word belongs to a service.
     in_service: Signal<Local, Bit>,
+    /// High if one of these channels takes the trigger, from the first to the last.
     taken: Vec<Signal<Local, Bit>>,
+    /// High if one of these channels owes a result.
     owes: Vec<Signal<Local, Bit>>,
+    /// High if one of these channels has brought its result.
     brought: Vec<Signal<Local, Bit>>,
+    /// High for one cycle when a channel takes a trigger.
     new_set: Signal<Local, Bit>,
+    /// High if the last result of one of these channels is an error, or it raises an alarm.
     faulty: Vec<Signal<Local, Bit>>,
+    /// Time in system clock cycles; its bits make the LED blink.
     now: Signal<Local, Bits<32>>,
+    /// Bit of the time that makes the LED blink slowly.
     slow_bit: Constant<Bits<5>>,
+    /// Bit of the time that makes the LED blink quickly.
     quick_bit: Constant<Bits<5>>,
     _channels: usize,
     _links: usize,

@@ -2,18 +2,18 @@
 //!
 //! ```text
 //! channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
-//! ring block of the channel --(ring stands still, channel not busy, no trigger)--> configuration of the channel
+//! ring block of the channel --(ring at rest, channel not busy, no trigger)--> configuration of the channel
 //! ```
 //!
-//! The held words of all channels are loaded by the same signal, so they belong together: [`crate::card::register_bank`] says when. What stands for longer
-//! than a trigger says so: the age counts the time that the words are held, `stale` a trigger that has come since. A byte that is not selected
+//! The held words of all channels are loaded by the same signal, so they belong together: [`crate::card::register_bank`] says when. Words that are held for longer
+//! than a trigger show it: the age counts on while they are held, and `stale` reports a trigger that has come since. A byte that is not selected
 //! is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
 
 use crate::card::config_ring::ConfigRing;
 use crate::config::CardConfig;
 use crate::ports::{FrameResultIn, PortSettingsOut};
 use crate::regs::config_words;
-use crate::several::each;
+use crate::replicate::each;
 use endat_macros::kernel;
 use rtl_design::reg::Reg;
 use rtl_design::Block;
@@ -67,15 +67,15 @@ pub struct ChannelRegisters {
     pub read_out: Signal<Out, Bits<8>>,
     /// The configuration ring moves on by one byte.
     pub ring_turn: Signal<In, Bit>,
-    /// The configuration ring stands still, its words are in place.
+    /// The configuration ring is at rest, its words are in place.
     pub ring_home: Signal<In, Bit>,
-    /// Byte from the ring block behind, its parity in bit 8.
+    /// Byte from the following ring block, its parity in bit 8.
     pub ring_in: Signal<In, Bits<9>>,
     /// Byte to the ring block in front.
     pub ring_out: Signal<Out, Bits<9>>,
     /// The card's own settings are not what was written.
     pub card_damaged: Signal<In, Bit>,
-    /// Triggers left out after each that the channel takes; this and the next one as they stand on the ring.
+    /// Triggers left out after each that the channel takes; this and the next one directly from the ring.
     pub trigger_skip: Signal<Out, Bits<5>>,
     /// Trigger sources that are not for this channel.
     pub ignored_sources: Signal<Out, Bits<3>>,
@@ -88,28 +88,46 @@ pub struct ChannelRegisters {
     pub field_gap_us: Signal<Out, Bits<3>>,
     /// The words of the result as they are now, for the second interface; none without one.
     pub live: Vec<Signal<Out, Bits<32>>>,
+    /// High from a trigger that the channel takes until the result of that trigger.
     waiting: Reg<Bit>,
-    behind: Reg<Bit>,
-    behind_now: Signal<Local, Bit>,
+    /// High if a trigger has come since the last result.
+    newer_trigger: Reg<Bit>,
+    /// `newer_trigger`, with the trigger or result of this cycle.
+    newer_trigger_now: Signal<Local, Bit>,
+    /// High if a trigger has come since the trigger of the held result.
     stale: Reg<Bit>,
+    /// `stale`, with the trigger or load of this cycle.
     stale_now: Signal<Local, Bit>,
+    /// `stale` as the host reads it; frozen while a word is read.
     stale_shown: Reg<Bit>,
+    /// Age of the held position in microseconds, up to 65535; loaded with the held words.
     age: Reg<Bits<16>>,
-    /// The age has reached its largest value.
+    /// High if the age has its largest value.
     age_full: Reg<Bit>,
+    /// High if the age rises by one in this cycle.
     age_tick: Signal<Local, Bit>,
+    /// Age with the tick or load of this cycle.
     age_now: Signal<Local, Bits<16>>,
+    /// Age as the host reads it; frozen while a word is read.
     age_shown: Reg<Bits<16>>,
+    /// Words of the result that the host reads; loaded together for all channels.
     held: Vec<Reg<Bits<32>>>,
+    /// Words of the result as the channel gives it now.
     word: Vec<Signal<Local, Bits<32>>>,
+    /// Held words, with age and `stale`.
     shown: Vec<Signal<Local, Bits<32>>>,
+    /// Selected byte of each held word; 0 for words that are not read.
     byte: Vec<Reg<Bits<8>>>,
+    /// OR of these bytes; 0 while this channel is not read.
     read_byte: Reg<Bits<8>>,
     ring: ConfigRing,
+    /// Configuration word 0 in use: clock and frame; copied from the ring while the channel is idle.
     #[given]
     config0: Reg<Bits<32>>,
+    /// Configuration word 1 in use: timing; copied from the ring while the channel is idle.
     #[given]
     config1: Reg<Bits<32>>,
+    /// Configuration word 2 in use: limits; copied from the ring while the channel is idle.
     #[given]
     config2: Reg<Bits<32>>,
     _words: usize,
@@ -158,17 +176,17 @@ impl Logic for ChannelRegisters {
         self.brought.next = self.waiting.q.val() & self.result.result_strobe.val();
 
         // A trigger that comes with a result is newer than it.
-        self.behind_now.next =
-            self.trigger.val() | (self.behind.q.val() & !self.result.result_strobe.val());
-        self.behind.d.next = self.behind_now.val();
+        self.newer_trigger_now.next =
+            self.trigger.val() | (self.newer_trigger.q.val() & !self.result.result_strobe.val());
+        self.newer_trigger.d.next = self.newer_trigger_now.val();
         self.stale_now.next = self.stale.q.val() | self.trigger.val();
         self.age_tick.next = self.tick_us.val() & !self.age_full.q.val();
         self.age_full.d.next = self.age.q.val().get_bits::<15>(1).all()
             & (self.age.q.val().get_bit(0) | self.age_tick.val());
         self.age_now.next = self.age.q.val() + bit_cast::<16, 1>(self.age_tick.val().into());
-        // Behind the adder: whether the result may be loaded is known late.
+        // After the adder: `load` is known late.
         if self.load.val() {
-            self.stale_now.next = self.behind_now.val();
+            self.stale_now.next = self.newer_trigger_now.val();
             self.age_now.next = self.result.age_us.val();
             self.age_full.d.next = self.result.age_us.val().all();
         }
@@ -219,7 +237,7 @@ impl Logic for ChannelRegisters {
         for i in self._lives..self._live_ends {
             self.live[i].next = self.word[i].val()
                 | place!(self.result.age_us.val(), result.age_recovery.age_us)
-                | place!(self.behind_now.val(), result.age_recovery.stale);
+                | place!(self.newer_trigger_now.val(), result.age_recovery.stale);
         }
         for i in 0..self._words {
             connect!(self.held[i] <= self; clock, reset);
@@ -262,17 +280,21 @@ impl Logic for ChannelRegisters {
 
         connect!(self.ring <= self; turn = ring_turn, byte_in = ring_in);
         self.ring_out.next = self.ring.byte_out.val();
-        // Not in the cycle of a trigger either: its frame has what was looked at when it was taken.
+        // Not in the cycle of a trigger either: its frame uses the settings that were checked with it.
         if self.ring_home.val() & !self.busy.val() & !self.trigger.val() {
             self.config0.d.next = self.ring.word0.val();
             self.config1.d.next = self.ring.word1.val();
             self.config2.d.next = self.ring.word2.val();
         }
         self.trigger_skip.next = field!(self.ring.word0.val(), config.frame.skip);
-        self.ignored_sources.next = bit_cast::<3, 2>(self.ring.word0.val().get_bits::<2>(22))
-            | (bit_cast::<3, 1>(
-                field!(self.ring.word0.val(), config.frame.ignore_register).into(),
-            ) << 2);
+        self.ignored_sources.next =
+            bit_cast::<3, 1>(field!(self.ring.word0.val(), config.frame.ignore_pin).into())
+                | (bit_cast::<3, 1>(
+                    field!(self.ring.word0.val(), config.frame.ignore_timer).into(),
+                ) << 1)
+                | (bit_cast::<3, 1>(
+                    field!(self.ring.word0.val(), config.frame.ignore_register).into(),
+                ) << 2);
         self.settings.period_cycles.next = field!(self.config0.q.val(), config.frame.period_cycles);
         self.settings.position_bits.next = field!(self.config0.q.val(), config.frame.position_bits);
         self.settings.first_low_extra_cycles.next =
@@ -288,7 +310,7 @@ impl Logic for ChannelRegisters {
         self.settings.recovery_limit_cycles.next =
             field!(self.config2.q.val(), config.limits.recovery_limit_cycles);
 
-        // With settings that nobody wrote nothing goes out: these are no commands.
+        // A channel with corrupted settings sends no command: these codes are none.
         self.settings.command.next = field!(self.config0.q.val(), config.frame.command);
         self.request_id.next = field!(self.config1.q.val(), config.timing.request_id);
         if self.ring.is_damaged.val() | self.card_damaged.val() {

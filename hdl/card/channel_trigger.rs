@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! sources' hits --> not ignored, not disabled --> every (skip + 1)-th --> register --> trigger
-//! ring: settings --(ring stands still)--^           ^-- restart: all channels count from here
+//! ring: settings --(ring at rest)-----^           ^-- restart: all channels count from here
 //! ```
 //!
 //! Channels with equal settings trigger in the same cycle: they take settings over in the same cycle, busy or not, and a write to one of
@@ -24,7 +24,7 @@ pub struct ChannelTrigger {
     pub reset: Signal<In, Bit>,
     /// Enabled sources that trigger in the next cycle: bit 0 pin, bit 1 timer, bit 2 register.
     pub hits: Signal<In, Bits<3>>,
-    /// The settings below stand; otherwise the ring is turning.
+    /// The settings below are valid; otherwise the ring is turning.
     pub home: Signal<In, Bit>,
     /// Sources that are not for this channel, as `hits`.
     pub ignored_sources: Signal<In, Bits<3>>,
@@ -38,15 +38,22 @@ pub struct ChannelTrigger {
     pub trigger: Signal<Out, Bit>,
     /// The channel takes no trigger.
     pub disabled: Signal<Out, Bit>,
+    /// Sources that do not trigger this channel; copied from the ring while it is at rest.
     #[given]
     ignored: Reg<Bits<3>>,
+    /// Triggers left out after each one taken; copied from the ring while it is at rest.
     #[given]
     skipped: Reg<Bits<5>>,
+    /// High if the channel takes no trigger; copied from the ring while it is at rest.
     #[given]
     is_off: Reg<Bit>,
+    /// Triggers still to be left out; cleared by `restart`.
     left: Reg<Bits<5>>,
+    /// High for one cycle when the channel triggers.
     strobe: Reg<Bit>,
+    /// High if a source that counts for this channel has a hit.
     own: Signal<Local, Bit>,
+    /// High if no trigger is to be left out.
     is_due: Signal<Local, Bit>,
 }
 

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
-//! in place only while the ring stands still, so the blocks work from copies that are taken then.
+//! in place only while the ring is at rest, so the blocks work from copies that are taken then.
 //! <!-- with has_guards -->
 //!
 //! Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
@@ -31,27 +31,33 @@ pub struct ConfigRing {
     pub reset: Signal<In, Bit>,
     /// The ring moves on by one byte.
     pub turn: Signal<In, Bit>,
-    /// Byte from the block behind, its parity in bit 8.
+    /// Byte from the following block, its parity in bit 8.
     pub byte_in: Signal<In, Bits<9>>,
     /// Byte that goes to the block in front: the most significant one of word 0.
     pub byte_out: Signal<Out, Bits<9>>,
-    /// Word 0, while the ring stands still.
+    /// Word 0, while the ring is at rest.
     pub word0: Signal<Out, Bits<32>>,
-    /// Word 1, while the ring stands still.
+    /// Word 1, while the ring is at rest.
     pub word1: Signal<Out, Bits<32>>,
-    /// Word 2, while the ring stands still.
+    /// Word 2, while the ring is at rest.
     pub word2: Signal<Out, Bits<32>>,
-    /// The words are not what was written, as of the last cycle in which the ring stood still.
+    /// The words are not what was written, as of the last cycle in which the ring was at rest.
     pub is_damaged: Signal<Out, Bit>,
+    /// Word 0 while the ring is at rest; its top byte leaves first.
     #[given]
     w0: Reg<Bits<32>>,
+    /// Word 1 while the ring is at rest.
     #[given]
     w1: Reg<Bits<32>>,
+    /// Word 2 while the ring is at rest; bytes enter at its low end.
     #[given]
     w2: Reg<Bits<32>>,
+    /// Parity of each of the twelve bytes, in the same order; 0 without guards.
     #[given]
     parities: Reg<Bits<12>>,
+    /// High if the words differ from their parities; computed while the ring is at rest.
     damaged: Reg<Bit>,
+    /// 1 if each byte has a parity.
     has_guards: Constant<Bit>,
 }
 

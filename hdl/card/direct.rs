@@ -54,25 +54,43 @@ pub struct DirectOutput {
     pub direct_fresh: Signal<Out, Bit>,
     /// The last result's cause is one of the selected ones, or the alarm is selected and on.
     pub direct_error: Signal<Out, Bit>,
+    /// Lowest bit of the cropped position; written by the host.
     first_bit: Reg<Bits<6>>,
+    /// Length of the cropped position; written by the host.
     #[given]
     length_bits: Reg<Bits<6>>,
+    /// Causes that raise the error output, bit 0 the alarm; written by the host.
     #[start(u64::from(ERROR_CAUSES).into())]
     error_causes: Reg<Bits<32>>,
+    /// Byte that the host reads; 0 if the word is none of this channel's.
     byte_read: Reg<Bits<8>>,
+    /// Bits of the cropped position so far; they enter at the top.
     bits: Reg<Bits<32>>,
+    /// Cropped position that is shown.
     shown: Reg<Bits<32>>,
+    /// Bit of the position that is taken next; stops at 63.
     at: Reg<Bits<6>>,
+    /// Bits that have been taken of the cropped position.
     taken: Reg<Bits<6>>,
+    /// High while a position is cropped.
     running: Reg<Bit>,
+    /// High if the shown position is that of the last result; cleared by a result.
     cropped: Reg<Bit>,
+    /// High for one cycle when the shown position is new.
     strobe: Reg<Bit>,
+    /// High if the last result is an error of the selected kinds.
     error: Reg<Bit>,
+    /// Position, with zeros up to bit 63.
     wide: Signal<Local, Bits<64>>,
+    /// Bit that is taken; 0 beyond the length.
     next_bit: Signal<Local, Bit>,
+    /// `bits` with the bit that is taken.
     shifted: Signal<Local, Bits<32>>,
+    /// High if the address is one of this channel's words.
     selected: Signal<Local, Bit>,
+    /// Word that the address selects.
     word: Signal<Local, Bits<32>>,
+    /// Address of the two words, divided by 2.
     pair: Constant<Bits<10>>,
 }
 

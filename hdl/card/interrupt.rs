@@ -7,7 +7,7 @@
 //! An event that comes in the cycle of its clear is not lost.
 
 use crate::regs::INTERRUPT;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -42,21 +42,35 @@ pub struct Interrupt {
     pub read_byte: Signal<Out, Bits<8>>,
     /// An event that the mask lets through has not been cleared.
     pub irq: Signal<Out, Bit>,
+    /// Events that have not been cleared, 4 bits per channel; set by an event, cleared by the host.
     status: Reg<Bits<32>>,
+    /// Events that interrupt; written by the host.
     mask: Reg<Bits<32>>,
+    /// High while an event that the mask lets through is set.
     wants: Reg<Bit>,
+    /// Byte that the host reads; 0 if the word is not one of these.
     byte_read: Reg<Bits<8>>,
+    /// `result` of the cycle before, per channel.
     had_result: Vec<Reg<Bit>>,
+    /// `error` of the cycle before, per channel.
     had_error: Vec<Reg<Bit>>,
+    /// `alarm` of the cycle before, per channel.
     had_alarm: Vec<Reg<Bit>>,
-    /// From the last channel down: 4 bits each, the lowest channel's lowest.
+    /// Events of this cycle, from the last channel down: 4 bits each (result, error, alarm, request), the lowest channel's lowest.
     events: Vec<Signal<Local, Bits<32>>>,
-    one: Vec<Signal<Local, Bits<32>>>,
-    two: Vec<Signal<Local, Bits<32>>>,
-    four: Vec<Signal<Local, Bits<32>>>,
-    eight: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 0 of the channel's events: a new result.
+    result_event: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 1: a result that is an error, or became one.
+    error_event: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 2: the alarm has come on.
+    alarm_event: Vec<Signal<Local, Bits<32>>>,
+    /// Bit 3: the frame of a request has ended.
+    request_event: Vec<Signal<Local, Bits<32>>>,
+    /// High if the address is one of these words.
     selected: Signal<Local, Bit>,
+    /// Word that the address selects.
     word: Signal<Local, Bits<32>>,
+    /// Address of the first word, divided by 4.
     words: Constant<Bits<9>>,
     _channels: usize,
     _links: usize,
@@ -74,10 +88,10 @@ impl Interrupt {
             had_error: each(channels),
             had_alarm: each(channels),
             events: each(channels + 1),
-            one: each(channels),
-            two: each(channels),
-            four: each(channels),
-            eight: each(channels),
+            result_event: each(channels),
+            error_event: each(channels),
+            alarm_event: each(channels),
+            request_event: each(channels),
             words: Constant::new(u64::from(INTERRUPT.base >> 2).into()),
             _channels: channels,
             _links: channels + 1,
@@ -95,28 +109,28 @@ impl Logic for Interrupt {
             self.had_error[i].d.next = self.error[i].val();
             connect!(self.had_alarm[i] <= self; clock, reset);
             self.had_alarm[i].d.next = self.alarm[i].val();
-            self.one[i].next = 0.into();
+            self.result_event[i].next = 0.into();
             if self.result[i].val() {
-                self.one[i].next = 1.into();
+                self.result_event[i].next = 1.into();
             }
             // Each bad result, and a cause that comes after its result.
-            self.two[i].next = 0.into();
+            self.error_event[i].next = 0.into();
             if self.error[i].val() & (self.had_result[i].q.val() | !self.had_error[i].q.val()) {
-                self.two[i].next = 2.into();
+                self.error_event[i].next = 2.into();
             }
-            self.four[i].next = 0.into();
+            self.alarm_event[i].next = 0.into();
             if self.alarm[i].val() & !self.had_alarm[i].q.val() {
-                self.four[i].next = 4.into();
+                self.alarm_event[i].next = 4.into();
             }
-            self.eight[i].next = 0.into();
+            self.request_event[i].next = 0.into();
             if self.request[i].val() {
-                self.eight[i].next = 8.into();
+                self.request_event[i].next = 8.into();
             }
             self.events[i].next = (self.events[i + 1].val() << 4)
-                | self.one[i].val()
-                | self.two[i].val()
-                | self.four[i].val()
-                | self.eight[i].val();
+                | self.result_event[i].val()
+                | self.error_event[i].val()
+                | self.alarm_event[i].val()
+                | self.request_event[i].val();
         }
         for i in self._channels..self._links {
             self.events[i].next = 0.into();

@@ -1,11 +1,11 @@
-//! The recovery time once more, beside the channel: a counter that no frame resets, kept at the edges.
+//! The recovery time, measured a second time apart from the channel: a counter that no frame resets, kept at the edges.
 //!
 //! ```text
 //! CLOCK as it goes to the pin ---------- rising edge ---> rise = counter
 //! DATA pin --> synchroniser of its own --falling edge---> fall = counter
 //! ```
 //!
-//! DATA falls within the answer, too, and with a long cable behind the last edge of CLOCK: the last fall is the one that counts. The
+//! DATA falls within the answer, too, and with a long cable after the last edge of CLOCK: the last fall is the one that counts. The
 //! counters of two channels are never equal, so a control sees that it reads the one it means, and that it runs.
 
 use crate::regs::{COUNTER_SPACING, RECOVERY};
@@ -35,22 +35,35 @@ pub struct RecoveryCounter {
     pub lane: Signal<In, Bits<2>>,
     /// Byte of the word, a cycle after its address; 0 if it is none of this channel's.
     pub read_byte: Signal<Out, Bits<8>>,
+    /// Counts system clock cycles from reset on, and wraps; each channel starts at another value.
     #[given]
     counter: Reg<Bits<16>>,
+    /// Counter at the last rising edge of CLOCK.
     rise: Reg<Bits<16>>,
+    /// Counter at the last falling edge of DATA.
     fall: Reg<Bits<16>>,
+    /// High if DATA has fallen since the last rising edge of CLOCK.
     fallen: Reg<Bit>,
-    // CLOCK rests HIGH.
+    /// CLOCK of the cycle before; HIGH at rest.
     #[start(true)]
     clk_before: Reg<Bit>,
+    /// DATA, first synchroniser stage.
     sampled: SyncReg<Bit>,
+    /// DATA, second synchroniser stage.
     level: SyncReg<Bit>,
+    /// DATA one cycle before `level`.
     level_before: Reg<Bit>,
+    /// Low three bytes of the word that is read, as of the read of its first byte.
     held: Reg<Bits<24>>,
+    /// Byte that is read; 0 if the word is none of this channel's.
     byte_read: Reg<Bits<8>>,
+    /// High if DATA has fallen since the last rising edge of CLOCK and is LOW.
     is_over: Signal<Local, Bit>,
+    /// High if the address is one of this channel's words.
     selected: Signal<Local, Bit>,
+    /// Word that the address selects.
     word: Signal<Local, Bits<32>>,
+    /// Address of the two words, divided by 2.
     pair: Constant<Bits<10>>,
 }
 
@@ -93,7 +106,7 @@ impl Logic for RecoveryCounter {
             self.word.next = place!(self.counter.q.val(), recovery.counter.value)
                 | place!(self.is_over.val(), recovery.counter.fallen);
         }
-        // A word is of one moment: that of its first byte.
+        // The read of the first byte latches the other three.
         if !self.lane.val().any() {
             self.held.d.next = self.word.val().get_bits::<24>(0);
         }

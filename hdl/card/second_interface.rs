@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Mode 0, 32 bits to a word, most significant first. `c` channels; `r r` counts what has been read before, so that an answer is never the one
-//! before. The words are those of the register block `result`; behind them stand the channel's number and `k k`, CRC-16/CCITT-FALSE (polynomial
+//! before. The words are those of the register block `result`; they are followed by the channel's number and `k k`, CRC-16/CCITT-FALSE (polynomial
 //! 0x1021, start 0xFFFF) over everything since the check sum before. The controller may stop anywhere.
 //!
 //! Nothing that comes in here reaches the card but clock and select: whatever the second controller does, the first one does not see it.
@@ -60,32 +60,53 @@ pub struct SecondInterface {
     pub take: Signal<Out, Bit>,
     /// Channel whose word is next.
     pub channel: Signal<Out, Bits<4>>,
-    /// The next word of it; behind the last one that of the check sum.
+    /// The next word of it; following the last one that of the check sum.
     pub word_at: Signal<Out, Bits<4>>,
     /// That word.
     pub word: Signal<In, Bits<32>>,
+    /// Serial clock, first synchroniser stage.
     sck_0: SyncReg<Bit>,
+    /// Serial clock, second synchroniser stage.
     sck_1: SyncReg<Bit>,
+    /// Serial clock one cycle before `sck_1`, to find its edges.
     sck_2: Reg<Bit>,
+    /// Chip select, active high, first synchroniser stage.
     cs_0: SyncReg<Bit>,
+    /// Chip select, second synchroniser stage.
     cs_1: SyncReg<Bit>,
+    /// Chip select one cycle before `cs_1`.
     cs_2: Reg<Bit>,
+    /// Word on the line.
     #[start(SecondState::Head)]
     state: Reg<SecondState>,
+    /// Bits of the word that the controller has taken.
     bit_count: Reg<Bits<5>>,
+    /// CRC since the last check sum.
     #[start(0xffffu64.into())]
     crc: Reg<Bits<16>>,
+    /// Bits still to be sent of the word, the one on the line at the top.
     shift_out: Reg<Bits<32>>,
+    /// Answers that have ended, wrapping.
     reads: Reg<Bits<16>>,
+    /// Channel whose word is sent next.
     channel_at: Reg<Bits<4>>,
-    next: Reg<Bits<4>>,
+    /// Word of the record that is sent next; following the last one the check sum.
+    next_word: Reg<Bits<4>>,
+    /// High for one cycle at a rising edge of the serial clock.
     rise: Signal<Local, Bit>,
+    /// High for one cycle at a falling edge of the serial clock.
     fall: Signal<Local, Bit>,
+    /// High if the check sum is sent next.
     at_check_sum: Signal<Local, Bit>,
+    /// Number of channels.
     channels: Constant<Bits<4>>,
+    /// Number of words in a record: the place of its check sum.
     check_sum: Constant<Bits<4>>,
+    /// First half of the first word: mark and number of channels.
     head: Constant<Bits<16>>,
+    /// Configuration hash.
     hash: Constant<Bits<32>>,
+    /// Generator of the CRC, without x^16.
     polynomial: Constant<Bits<16>>,
 }
 
@@ -125,23 +146,23 @@ impl Logic for SecondInterface {
         }
 
         // What goes out changes with the falling edge.
-        self.at_check_sum.next = self.next.q.val() == self.check_sum.val();
+        self.at_check_sum.next = self.next_word.q.val() == self.check_sum.val();
         if self.fall.val() {
             self.shift_out.d.next = self.shift_out.q.val() << 1;
             if self.bit_count.q.val() == 0 {
                 self.shift_out.d.next = self.word.val();
-                self.next.d.next = self.next.q.val() + 1;
+                self.next_word.d.next = self.next_word.q.val() + 1;
                 self.state.d.next = SecondState::Record;
                 if self.at_check_sum.val() {
                     self.state.d.next = SecondState::CheckSum;
                     self.channel_at.d.next = self.channel_at.q.val() + 1;
-                    self.next.d.next = 0.into();
+                    self.next_word.d.next = 0.into();
                 }
                 match self.state.q.val() {
                     SecondState::Head => {
                         self.state.d.next = SecondState::Hash;
                         self.shift_out.d.next = self.hash.val();
-                        self.next.d.next = 0.into();
+                        self.next_word.d.next = 0.into();
                     }
                     SecondState::CheckSum => {
                         self.crc.d.next = 0xffff.into();
@@ -151,7 +172,7 @@ impl Logic for SecondInterface {
                     }
                     SecondState::Rest => {
                         self.state.d.next = SecondState::Rest;
-                        self.next.d.next = 0.into();
+                        self.next_word.d.next = 0.into();
                         self.shift_out.d.next = 0.into();
                     }
                     _ => {}
@@ -167,7 +188,7 @@ impl Logic for SecondInterface {
             self.bit_count.d.next = 0.into();
             self.crc.d.next = 0xffff.into();
             self.channel_at.d.next = 0.into();
-            self.next.d.next = 0.into();
+            self.next_word.d.next = 0.into();
             self.shift_out.d.next = (bit_cast::<32, 16>(self.head.val()) << 16)
                 | bit_cast::<32, 16>(self.reads.q.val());
         }
@@ -176,7 +197,7 @@ impl Logic for SecondInterface {
         }
 
         self.channel.next = self.channel_at.q.val();
-        self.word_at.next = self.next.q.val();
+        self.word_at.next = self.next_word.q.val();
         self.miso.next = self.shift_out.q.val().get_bit(31);
         // No register: the line is free as soon as the controller lets go.
         self.miso_enable.next = !self.cs_n.val();

@@ -8,11 +8,11 @@
 //! host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
 //! ```
 //!
-//! What a set and a frame look like is told in `docs/stream.md`. A set that is closed is taken whole in one cycle, then written in its own
+//! `docs/stream.md` has the format of a set and of a frame. A set that is closed is taken whole in one cycle, then written in its own
 //! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 
 use crate::card::ports::PushOut;
-use crate::several::each;
+use crate::replicate::each;
 use buffer::{FrameBuffer, SetParts};
 use endat_macros::kernel;
 use rtl_design::reg::Reg;
@@ -57,8 +57,8 @@ pub struct Stream {
     pub run_ready: Vec<Signal<In, Bit>>,
     /// Number of its result.
     pub run_sequence: Vec<Signal<In, Bits<16>>>,
-    /// Its moment.
-    pub run_moment: Vec<Signal<In, Bits<32>>>,
+    /// Time of the trigger, in system clock cycles.
+    pub run_timestamp: Vec<Signal<In, Bits<32>>>,
     /// First byte of its set.
     pub run_head: Vec<Signal<In, Bits<8>>>,
     /// Place of its channel in a set.
@@ -89,44 +89,81 @@ pub struct Stream {
     #[bundle]
     pub pushed: PushOut,
     buffer: FrameBuffer,
+    /// High while sets are collected; written by the host.
     #[given]
     collect: Reg<Bit>,
+    /// High while frames are pushed through the front; written by the host.
     #[given]
     push_on: Reg<Bit>,
+    /// High from a trigger until its set is closed or counted as lost.
     open: Reg<Bit>,
+    /// High in the first cycle after a trigger: the trigger count is not up to date before.
     first: Reg<Bit>,
+    /// High if a result of the open set has been replaced by another; cleared by a trigger.
     spoilt: Reg<Bit>,
+    /// Number of the trigger of the open set.
     sequence: Reg<Bits<16>>,
-    moment: Reg<Bits<32>>,
+    /// Time of the trigger of the open set.
+    trigger_time: Reg<Bits<32>>,
+    /// Number in the head of the set that is being written.
     sequence_taken: Reg<Bits<16>>,
-    moment_taken: Reg<Bits<32>>,
+    /// Time in the head of the set that is being written.
+    time_taken: Reg<Bits<32>>,
+    /// Count of lost sets in the head of the set that is being written.
     lost_taken: Reg<Bits<8>>,
+    /// Sets lost since the last one that was written, up to 255.
     lost_before: Reg<Bits<8>>,
+    /// Sets lost since the host cleared the count, up to 65535.
     lost_all: Reg<Bits<16>>,
+    /// Byte of the head that is asked for; 0 while another block is.
     head_byte: Reg<Bits<8>>,
+    /// Low three bytes of the state word, as of the read of its first byte.
     state_held: Reg<Bits<24>>,
+    /// Byte that the host reads; 0 if the word is not one of the stream's.
     byte_read: Reg<Bits<8>>,
+    /// High from a clear by the host until the buffer is empty: its bytes are discarded.
     flush: Reg<Bit>,
+    /// High if the last byte that was taken was not the end of a frame.
     mid_frame: Reg<Bit>,
+    /// High from the first pushed byte of a frame to its last one.
     pushing: Reg<Bit>,
+    /// Channel whose position of a running clock is next.
     turn: Vec<Reg<Bits<3>>>,
+    /// High if the set that is being written is a position of a running clock.
     is_run: Vec<Reg<Bit>>,
+    /// First byte of that set.
     head_taken: Vec<Reg<Bits<8>>>,
+    /// Place of its channel in a set.
     place_taken: Vec<Reg<Bits<7>>>,
+    /// High for one cycle when a position of a running clock is taken.
     run_now: Vec<Signal<Local, Bit>>,
+    /// High for one cycle when a lost position of a running clock is counted.
     run_counts: Vec<Signal<Local, Bit>>,
+    /// High when the open set is complete, or ended by the next trigger.
     wanted: Signal<Local, Bit>,
+    /// High if the open set can be written: it fits into the buffer, and no result was replaced.
     good: Signal<Local, Bit>,
+    /// High for one cycle when a set is closed and taken for writing.
     take_now: Signal<Local, Bit>,
+    /// High for one cycle when a set is lost.
     lost_now: Signal<Local, Bit>,
+    /// High for one cycle when the host reads a byte of the stream's words.
     reads: Signal<Local, Bit>,
+    /// High for one cycle when the host writes one of the stream's words.
     writes: Signal<Local, Bit>,
+    /// High if the host can take the next byte from the data word.
     bus_may: Signal<Local, Bit>,
+    /// High for one cycle when the host takes a byte from the data word.
     bus_take: Signal<Local, Bit>,
+    /// High if the next byte is discarded: after a clear, or the rest of a frame that was partly read.
     skip: Signal<Local, Bit>,
+    /// High for one cycle when a byte leaves the buffer.
     take: Signal<Local, Bit>,
+    /// High if the next byte is not the end of a frame.
     more: Signal<Local, Bit>,
+    /// High for one cycle when the host clears the stream.
     clear: Signal<Local, Bit>,
+    /// First byte of a set of a trigger: its type and the number of channels.
     head: Constant<Bits<8>>,
     _seconds: usize,
     _runs: usize,
@@ -157,7 +194,7 @@ impl Stream {
             run_turn: each(runs),
             run_ready: each(runs),
             run_sequence: each(runs),
-            run_moment: each(runs),
+            run_timestamp: each(runs),
             run_head: each(runs),
             run_place: each(runs),
             run_take: each(runs),
@@ -196,7 +233,7 @@ impl Logic for Stream {
     fn close_set(&mut self) {
         self.first.d.next = self.trigger.val();
         if self.trigger.val() {
-            self.moment.d.next = self.timestamp.val();
+            self.trigger_time.d.next = self.timestamp.val();
         }
         if self.first.q.val() {
             self.sequence.d.next = self.trigger_count.val().get_bits::<16>(0);
@@ -222,7 +259,7 @@ impl Logic for Stream {
         self.buffer.start.next = self.take_now.val();
         if self.take_now.val() {
             self.sequence_taken.d.next = self.sequence.q.val();
-            self.moment_taken.d.next = self.moment.q.val();
+            self.time_taken.d.next = self.trigger_time.q.val();
             self.lost_taken.d.next = self.lost_before.q.val();
         }
         self.lost_before.reset.next = self.reset.val() | self.clear.val() | self.take_now.val();
@@ -252,7 +289,7 @@ impl Logic for Stream {
             self.is_run[i].d.next = self.is_run[i].q.val();
             self.head_taken[i].d.next = self.head_taken[i].q.val();
             self.place_taken[i].d.next = self.place_taken[i].q.val();
-            // Whose turn it is keeps it until it is taken: otherwise the first one behind the turns of no channel would have most of the room.
+            // A waiting channel keeps its turn until it is taken: otherwise the channel following unused turns would get most of the room.
             if self.run_now[i].val() | !self.run_ready[i].val() {
                 self.turn[i].d.next = self.turn[i].q.val() + 1;
             }
@@ -266,7 +303,7 @@ impl Logic for Stream {
                 self.head_taken[i].d.next = self.run_head[i].val();
                 self.place_taken[i].d.next = self.run_place[i].val();
                 self.sequence_taken.d.next = self.run_sequence[i].val();
-                self.moment_taken.d.next = self.run_moment[i].val();
+                self.time_taken.d.next = self.run_timestamp[i].val();
                 self.lost_taken.d.next = self.lost_before.q.val();
             }
             // One is counted in a cycle.
@@ -310,16 +347,16 @@ impl Logic for Stream {
                 self.head_byte.d.next = self.sequence_taken.q.val().get_bits::<8>(8);
             }
             4 => {
-                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(0);
+                self.head_byte.d.next = self.time_taken.q.val().get_bits::<8>(0);
             }
             5 => {
-                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(8);
+                self.head_byte.d.next = self.time_taken.q.val().get_bits::<8>(8);
             }
             6 => {
-                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(16);
+                self.head_byte.d.next = self.time_taken.q.val().get_bits::<8>(16);
             }
             _ => {
-                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(24);
+                self.head_byte.d.next = self.time_taken.q.val().get_bits::<8>(24);
             }
         }
         for i in 0..self._runs {
@@ -345,7 +382,7 @@ impl Logic for Stream {
             & !self.pushing.q.val()
             & !self.flush.q.val();
         self.bus_take.next = self.reads.val() & (self.word.val() == 2) & self.bus_may.val();
-        // The state is that of the moment when its first byte was read.
+        // The read of the first byte latches the other three.
         if self.reads.val() & !self.lane.val().any() {
             self.state_held.d.next = bit_cast::<24, 16>(self.buffer.waiting_bytes.val())
                 | (bit_cast::<24, 8>(self.lost_all.q.val().get_bits::<8>(0)) << 16);

@@ -24,10 +24,15 @@ pub struct Timebase {
     pub tick_us: Signal<Out, Bit>,
     /// System clock cycles since reset, wrapping.
     pub timestamp: Signal<Out, Bits<32>>,
+    /// System clock cycles of the current microsecond, from 0.
     count: Reg<Bits<8>>,
+    /// High for one cycle each microsecond.
     tick: Reg<Bit>,
+    /// System clock cycles since reset, wrapping.
     cycles: Reg<Bits<32>>,
+    /// High in the last cycle of a microsecond.
     hit: Signal<Local, Bit>,
+    /// System clock cycles in a microsecond, minus one.
     last_count: Constant<Bits<8>>,
 }
 

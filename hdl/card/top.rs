@@ -2,7 +2,7 @@
 
 /// A top: core, front, and who is connected to whom.
 ///
-/// Pins of the front stand in groups, inputs and outputs, in the order in which they are emitted, each with the front's name for it. Frames of the
+/// Pins of the front are in groups, inputs and outputs, in the order in which they are emitted, each with the front's name for it. Frames of the
 /// stream go out through the front's bundle that `pushed` names; `silent` where it has none. Without both it is a bus whose front needs nothing to
 /// begin.
 macro_rules! card_top {

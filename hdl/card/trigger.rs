@@ -40,22 +40,33 @@ pub struct Trigger {
     pub trigger: Signal<Out, Bit>,
     /// Triggers since reset, wrapping.
     pub trigger_count: Signal<Out, Bits<32>>,
-    // High, so that a pin that is high at power-up is not an edge.
+    /// Trigger pin, first synchroniser stage; starts HIGH, so that a pin HIGH at power-up is not an edge.
     #[start(true)]
     sync0: SyncReg<Bit>,
+    /// Trigger pin, second synchroniser stage.
     #[start(true)]
     sync1: SyncReg<Bit>,
+    /// Trigger pin one cycle before `sync1`, to find the edge.
     #[start(true)]
     sync2: SyncReg<Bit>,
+    /// Counts the timer period; held at its start while the timer source is disabled.
     #[start(TIMER_FIRST.into())]
     timer: Reg<Bits<24>>,
+    /// High if the low half of the timer was equal to that of the period one cycle ago.
     timer_hit_low: Reg<Bit>,
+    /// High if the high half of the timer was equal to that of the period one cycle ago.
     timer_hit_high: Reg<Bit>,
+    /// High for one cycle at the end of each timer period.
     timer_hit: Signal<Local, Bit>,
+    /// High for one cycle at a rising edge of the trigger pin.
     pin_hit: Signal<Local, Bit>,
+    /// Enabled sources that trigger in the next cycle, one bit each.
     hit: Signal<Local, Bits<3>>,
+    /// High for one cycle at each trigger.
     strobe: Reg<Bit>,
+    /// Triggers since reset, wrapping.
     count: Reg<Bits<32>>,
+    /// Start value of the timer.
     timer_first: Constant<Bits<24>>,
 }
 

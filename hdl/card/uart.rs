@@ -7,7 +7,7 @@
 //! strobe   ____________________________________/\_____
 //! ```
 //!
-//! A start bit that is high again at its middle was noise and is forgotten; a byte whose stop bit is low is
+//! A start bit that is high again at its middle was noise and is ignored; a byte whose stop bit is low is
 //! dropped and reported as `framing_error`. A line that stays low (break) gives one framing error, no bytes.
 
 use rtl_design::reg::{Reg, SyncReg};
@@ -52,25 +52,41 @@ pub struct UartReceiver {
     pub strobe: Signal<Out, Bit>,
     /// High for one cycle: a byte ended with a low stop bit and was dropped.
     pub framing_error: Signal<Out, Bit>,
+    /// Line, first synchroniser stage.
     #[start(true)]
     sync0: SyncReg<Bit>,
+    /// Line, second synchroniser stage.
     #[start(true)]
     sync1: SyncReg<Bit>,
+    /// Line one cycle before `sync1`, to find the edge of a start bit.
     #[start(true)]
     previous: Reg<Bit>,
+    /// High from the edge of a start bit to the sample of the stop bit.
     active: Reg<Bit>,
+    /// High until the start bit has been sampled at its middle.
     in_start_bit: Reg<Bit>,
+    /// System clock cycles since the edge or the last sample.
     count: Reg<Bits<15>>,
+    /// High for one cycle when the line is sampled.
     sample: Reg<Bit>,
+    /// Bits received so far, the last one at the top; a marker bit falls out with the stop bit.
     #[start(MARKER.into())]
     shift: Reg<Bits<10>>,
+    /// High for one cycle when a whole byte has come.
     good: Reg<Bit>,
+    /// High for one cycle when a byte ended with a LOW stop bit.
     bad: Reg<Bit>,
+    /// Count at which the next sample is due.
     limit: Signal<Local, Bits<15>>,
+    /// High when that count is reached.
     hit: Signal<Local, Bit>,
+    /// `shift` with the bit that is sampled.
     shifted: Signal<Local, Bits<10>>,
+    /// Count at the middle of the start bit.
     middle_count: Constant<Bits<15>>,
+    /// Count at the next sample: cycles in a bit, minus one.
     last_count: Constant<Bits<15>>,
+    /// Start value of `shift`.
     marker: Constant<Bits<10>>,
 }
 
@@ -152,15 +168,23 @@ pub struct UartTransmitter {
     pub accept: Signal<Out, Bit>,
     /// Serial line, idle HIGH, from a register.
     pub tx: Signal<Out, Bit>,
+    /// System clock cycles in the current bit.
     count: Reg<Bits<15>>,
+    /// High for one cycle at the end of each bit.
     bit_end: Reg<Bit>,
+    /// Bits still to be sent, the one on the line in bit 0.
     #[start(1.into())]
     shift: Reg<Bits<10>>,
+    /// High if only the stop bit is left.
     #[start(true)]
     empty: Reg<Bit>,
+    /// High in the last cycle of a bit.
     hit: Signal<Local, Bit>,
+    /// High for one cycle when a byte is loaded.
     take: Signal<Local, Bit>,
+    /// Cycles in a bit, minus one.
     last_count: Constant<Bits<15>>,
+    /// Stop bit at its place in `shift`.
     stop_bit: Constant<Bits<10>>,
 }
 
@@ -279,7 +303,7 @@ mod tests {
         let mut uut = receiver(16);
         let mut levels = vec![true; 40];
         levels[10..15].fill(false);
-        // A byte right behind it is not spoilt.
+        // A byte directly after it is not spoilt.
         levels.truncate(24);
         levels.extend(line(&[0xa5], 16.0, 0.0));
         assert_eq!(receive(&mut uut, levels), (vec![0xa5], 0));

@@ -6,8 +6,8 @@
 //! answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
 //! ```
 //!
-//! Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+//! Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
+//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
 //!
 //! Between answers it pushes the frames of a [`crate::card::stream::Stream`], each in one piece; an answer then begins with 0xFF.
 //!
@@ -70,43 +70,75 @@ pub struct UartBridge {
     pub pushed: PushIn,
     receiver: UartReceiver,
     transmitter: UartTransmitter,
+    /// Meaning of the next byte.
     #[start(BridgeState::Command)]
     state: Reg<BridgeState>,
+    /// High if all words of the command have one address.
     fixed: Reg<Bit>,
+    /// High if the command writes.
     writing: Reg<Bit>,
+    /// Words of the command that are left, with the one under way.
     words_left: Reg<Bits<8>>,
+    /// Word address; moves on after each word unless `fixed`.
     address: Reg<Bits<11>>,
+    /// High if the address is beyond the map: reads give 0, writes do nothing.
     out_of_range: Reg<Bit>,
+    /// Byte of the field under way: 0 = most significant.
     byte_lane: Reg<Bits<2>>,
+    /// Word to write; moves up by a byte as bytes come in or are taken.
     data: Reg<Bits<32>>,
+    /// Last byte received for a write, until it moves into `data`.
     next_byte: Reg<Bits<8>>,
+    /// High while `next_byte` waits.
     has_byte: Reg<Bit>,
+    /// High from the start of a write until it has been carried out.
     write_busy: Reg<Bit>,
+    /// High in the cycle after a byte of an answer was handed to the transmitter.
     sent: Reg<Bit>,
+    /// High in the cycle after the last byte of a word.
     word_end: Reg<Bit>,
+    /// High if one word is left.
     last_word: Reg<Bit>,
+    /// High if no word is left.
     no_word: Reg<Bit>,
+    /// High for one cycle when the address moves on.
     step_address: Reg<Bit>,
-    access_next: Reg<Bit>,
-    access_now: Reg<Bit>,
+    /// High for one cycle before `access_strobe`.
+    access_due: Reg<Bit>,
+    /// High for one cycle when an access to the register bank begins.
+    access_strobe: Reg<Bit>,
+    /// High while a byte that was read waits for the transmitter.
     byte_ready: Reg<Bit>,
+    /// Microseconds since the last byte of the command.
     idle_us: Reg<Bits<17>>,
+    /// High for one cycle when the time-out has ended the command.
     expired: Reg<Bit>,
+    /// High if the time-out starts again: a byte came or went, or no command is under way.
     stop_timer: Reg<Bit>,
+    /// High if the next answer begins with the mark 0xFF: pushing is on, or was since the last answer.
     marked: Reg<Bit>,
+    /// High until the mark of the answer under way has been handed to the transmitter.
     marker: Reg<Bit>,
+    /// High if the next byte on the line is one of the stream, not of an answer.
     from_stream: Signal<Local, Bit>,
+    /// High for one cycle when a byte of an answer is handed to the transmitter.
     answer_sent: Signal<Local, Bit>,
+    /// High at the last byte of an address or word.
     last_lane: Signal<Local, Bit>,
+    /// High for one cycle when a byte of an address or word has come or gone.
     next_lane: Signal<Local, Bit>,
+    /// Address of the following word, with carry.
     next_address: Signal<Local, Bits<12>>,
+    /// High if the received byte is not 0.
     high_bits: Signal<Local, Bit>,
+    /// High for one cycle when `next_byte` moves into `data`.
     data_moves: Signal<Local, Bit>,
+    /// Longest pause within a command, in microseconds.
     timeout_us: Constant<Bits<17>>,
 }
 
 impl UartBridge {
-    /// A bridge with bits of `bit_cycles` system clock cycles that forgets a command after a pause of `timeout_us`.
+    /// A bridge with bits of `bit_cycles` system clock cycles that drops a command after a pause of `timeout_us`.
     pub fn new(bit_cycles: u64, timeout_us: u64) -> Self {
         Self::from_parts(UartBridgeParts {
             receiver: UartReceiver::new(bit_cycles),
@@ -168,8 +200,8 @@ impl Logic for UartBridge {
         self.sent.d.next = self.answer_sent.val();
         self.word_end.d.next = false;
         self.step_address.d.next = false;
-        self.access_next.d.next = false;
-        self.access_now.d.next = self.access_next.q.val();
+        self.access_due.d.next = false;
+        self.access_strobe.d.next = self.access_due.q.val();
         self.next_lane.next = false;
         self.high_bits.next = self.receiver.data.val().any();
         self.stop_timer.d.next = self.receiver.strobe.val();
@@ -215,7 +247,7 @@ impl Logic for UartBridge {
                     self.next_lane.next = true;
                     if self.last_lane.val() {
                         self.state.d.next = BridgeState::Read;
-                        self.access_next.d.next = !self.writing.q.val() & !self.no_word.q.val();
+                        self.access_due.d.next = !self.writing.q.val() & !self.no_word.q.val();
                         self.marker.d.next = self.marked.q.val();
                         if self.writing.q.val() {
                             self.state.d.next = BridgeState::Write;
@@ -230,19 +262,19 @@ impl Logic for UartBridge {
                 if self.receiver.strobe.val() {
                     self.next_lane.next = true;
                     self.word_end.d.next = self.last_lane.val();
-                    self.access_next.d.next = self.last_lane.val();
+                    self.access_due.d.next = self.last_lane.val();
                 }
             }
             BridgeState::Read => {
-                // An answer that stands still would stand for ever: a byte of it that is lost in here never comes again.
+                // Without the time-out an answer would wait for ever for a byte that an upset has lost.
                 self.stop_timer.d.next = self.transmitter.accept.val();
                 if self.sent.q.val() {
                     self.next_lane.next = true;
                     self.word_end.d.next = self.last_lane.val();
-                    self.access_next.d.next = !self.last_lane.val();
+                    self.access_due.d.next = !self.last_lane.val();
                 }
                 if self.word_end.q.val() {
-                    self.access_next.d.next = !self.last_word.q.val();
+                    self.access_due.d.next = !self.last_word.q.val();
                     self.step_address.d.next = !self.fixed.q.val();
                 }
             }
@@ -307,7 +339,7 @@ impl Logic for UartBridge {
 
     /// The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
     fn take_data(&mut self) {
-        if self.access_now.q.val() & self.writing.q.val() {
+        if self.access_strobe.q.val() & self.writing.q.val() {
             self.write_busy.d.next = true;
         }
         if self.bank.done.val() {
@@ -351,7 +383,7 @@ impl Logic for UartBridge {
             self.expired.d.next = false;
         }
         if self.expired.q.val() {
-            self.access_next.d.next = false;
+            self.access_due.d.next = false;
             self.state.d.next = BridgeState::Command;
         }
     }
@@ -361,7 +393,7 @@ impl Logic for UartBridge {
         self.bank.word_address.next = self.address.q.val();
         self.bank.in_range.next = !self.out_of_range.q.val();
         self.bank.lane.next = self.byte_lane.q.val();
-        self.bank.access.next = self.access_now.q.val();
+        self.bank.access.next = self.access_strobe.q.val();
         self.bank.write.next = self.writing.q.val();
         self.bank.write_data.next = self.data.q.val();
         self.bank.reading.next = self.state.q.val() == BridgeState::Read;

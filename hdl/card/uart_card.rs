@@ -9,7 +9,7 @@ use super::{service_times, top::card_top, CardCore};
 use crate::card::uart_bridge::{UartBridge, TIMEOUT_US};
 use crate::config::CardConfig;
 use crate::endat::service::program::ServiceTimes;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 

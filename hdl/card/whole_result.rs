@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The outputs follow the result, but not from its publication until its frame is over: then they and the additional data change in one cycle. So
-//! whoever looks never mixes two frames, and none is waited for that never comes: each frame has an end. Frames that measure the delay and frames
+//! a reader never mixes two frames, and never waits for data that do not come: each frame has an end. Frames that measure the delay and frames
 //! of requests end without a result of their own, and change nothing.
 //!
 //! The stream does not wait so long for the position: it takes the result from the channel and the additional data, or that they are still due,
@@ -19,7 +19,7 @@
 
 use crate::ports::{AdditionalDataIn, FrameResultIn, FrameResultOut};
 use crate::regs::{BLOCK_STRIDE, INFO_FIRST, RESULT_BASE};
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -72,38 +72,71 @@ pub struct WholeResult {
     pub lane: Signal<In, Bits<2>>,
     /// The byte of the held additional data, 1 cycle later; 0 if another word is read.
     pub read_byte: Signal<Out, Bits<8>>,
+    /// High from a result until its frame has ended: additional data may still come.
     open: Reg<Bit>,
+    /// High in the cycle after a frame has ended.
     past: Reg<Bit>,
+    /// High for one cycle when a new result is shown, with its additional data.
     whole: Reg<Bit>,
+    /// Additional data 1 of the shown result: data, came, good and CRC.
     first: Reg<Bits<31>>,
+    /// Additional data 2 of the shown result.
     second: Reg<Bits<31>>,
+    /// Age of the shown position in microseconds, up to 65535.
     age: Reg<Bits<16>>,
+    /// Position that is shown.
     position_kept: Reg<Bits<48>>,
+    /// High if the shown position is valid.
     position_valid_kept: Reg<Bit>,
+    /// High if the shown result brought its position.
     fresh_kept: Reg<Bit>,
+    /// Number of the shown result.
     sequence_kept: Reg<Bits<16>>,
+    /// Time stamp of the shown position.
     first_fall_timestamp_kept: Reg<Bits<32>>,
+    /// Primary cause of the shown result.
     cause_kept: Reg<Bits<5>>,
+    /// Raw flags of the shown result.
     flags_kept: Reg<Bits<20>>,
+    /// CRC received with the shown result.
     crc_received_kept: Reg<Bits<5>>,
+    /// CRC computed for the shown result.
     crc_computed_kept: Reg<Bits<5>>,
+    /// CRC that came with the shown position.
     position_crc_kept: Reg<Bits<5>>,
+    /// Width of the shown position.
     position_width_kept: Reg<Bits<6>>,
+    /// High if the shown position came with F2.
     position_has_f2_kept: Reg<Bit>,
+    /// Recovery time of the shown result's frame.
     recovery_cycles_kept: Reg<Bits<13>>,
+    /// Line delay at the shown result.
     delay_cycles_kept: Reg<Bits<11>>,
+    /// Additional data 1 that the host reads.
     held_first: Reg<Bits<31>>,
+    /// Additional data 2 that the host reads.
     held_second: Reg<Bits<31>>,
+    /// Byte that the host reads; 0 if the word is none of these.
     byte_read: Reg<Bits<8>>,
+    /// High for one cycle when a result comes whose frame can bring additional data.
     opens: Signal<Local, Bit>,
+    /// `open`, with the result of this cycle.
     open_now: Signal<Local, Bit>,
+    /// High for one cycle when the frame of the result has ended, or the next trigger is taken.
     closes: Signal<Local, Bit>,
+    /// High in each cycle in which the shown result follows the channel's.
     follows: Signal<Local, Bit>,
+    /// Additional data 1 as they have come: data if the CRC is right.
     filled_1: Signal<Local, Bits<31>>,
+    /// Additional data 2 as they have come: data if the CRC is right.
     filled_2: Signal<Local, Bits<31>>,
+    /// High if the address is one of these words.
     selected: Signal<Local, Bit>,
+    /// Word that the address selects.
     word: Signal<Local, Bits<32>>,
+    /// Address of the two words, divided by 2.
     pair: Constant<Bits<10>>,
+    /// 1 if the channel has additional data.
     has_infos: Constant<Bit>,
     _live_pairs: usize,
 }
@@ -137,7 +170,7 @@ impl Logic for WholeResult {
         self.open.d.next = self.open_now.val() & !self.closes.val();
         self.is_open.next = self.open_now.val();
 
-        // The content counts if its CRC is right; the CRC stands as it came.
+        // The content counts if its CRC is right; the CRC is shown as it came.
         self.filled_1.next = (bit_cast::<31, 5>(self.record.info_crcs.val().get_bits::<5>(0))
             << 26)
             | (bit_cast::<31, 1>(self.record.info_came.val().get_bits::<1>(0)) << 24);

@@ -30,10 +30,10 @@ use crate::endat::second_receiver::SecondReceiver;
 use crate::endat::transaction::{cause, Transaction};
 use crate::input_filter::InputFilter;
 use crate::ports::*;
+use crate::protected_bit::ProtectedBit;
 use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
-use crate::several::numbered;
+use crate::replicate::numbered;
 use crate::snapshot::{Snapshot, Withdrawal};
-use crate::sure_bit::SureBit;
 use rtl_design::reg::Reg;
 use rtl_design::Block;
 use rust_hdl::prelude::*;
@@ -134,8 +134,8 @@ pub struct Channel {
     data_pin: Reg<Bit>,
     oe_pin: Reg<Bit>,
     second: Vec<SecondReceiver>,
-    own_asked: Vec<SureBit>,
-    ride_asked: Vec<SureBit>,
+    own_asked: Vec<ProtectedBit>,
+    ride_asked: Vec<ProtectedBit>,
     own_wanted: Signal<Local, Bit>,
     ride_wanted: Signal<Local, Bit>,
     command_set: Signal<Local, Bits<6>>,
@@ -207,8 +207,8 @@ impl Channel {
             wanted_shape: CommandShape::new(features.requests),
             add_info: AddInfo::new(times.separator_cycles),
             second: numbered(seconds, |_| SecondReceiver::new(features)),
-            own_asked: numbered(requests, |_| SureBit::new(guards)),
-            ride_asked: numbered(requests, |_| SureBit::new(guards)),
+            own_asked: numbered(requests, |_| ProtectedBit::new(guards)),
+            ride_asked: numbered(requests, |_| ProtectedBit::new(guards)),
             _requests: requests,
             _seconds: seconds,
             has_guards: Constant::new(guards),

@@ -21,7 +21,7 @@ pub mod map;
 pub mod program;
 
 use crate::endat::sequencer::Sequencer;
-use crate::several::each;
+use crate::replicate::each;
 use map::output;
 use program::ServiceTimes;
 use rtl_design::reg::Reg;

@@ -30,8 +30,8 @@ use crate::endat::features::{Features, FixedTimes};
 use crate::endat::line_health::LineHealth;
 use crate::endat::ports::*;
 use crate::endat::timing;
-use crate::several::numbered;
-use crate::sure_bit::SureBit;
+use crate::protected_bit::ProtectedBit;
+use crate::replicate::numbered;
 use cause::flag;
 use last_edge::LastEdge;
 use phase::Phase;
@@ -169,7 +169,7 @@ pub struct Transaction {
     late: Reg<Bit>,
     probing: Reg<Bit>,
     settling: Reg<Bit>,
-    runs: Vec<SureBit>,
+    runs: Vec<ProtectedBit>,
     going: Signal<Local, Bit>,
     _runs: usize,
     leaving: Reg<Bit>,
@@ -254,7 +254,7 @@ impl Transaction {
             tail_low: Constant::new(flag::TAIL_LOW.into()),
             upset: Constant::new(flag(cause::UPSET).into()),
             runs: numbered(usize::from(features.continuous), |_| {
-                SureBit::new(features.upset_guards)
+                ProtectedBit::new(features.upset_guards)
             }),
             has_guards: Constant::new(features.upset_guards),
             _runs: features.continuous.into(),

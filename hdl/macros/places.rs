@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `field!(word, block.register.field)` | that field of a word; a bit, where it is one |
 //! | `half!(half, block.register.field)` | the same, of the half of 16 bits that has the field |
-//! | `place!(value, block.register.field)` | a word in which the value stands there, and all else is 0 |
+//! | `place!(value, block.register.field)` | a word with the value in that place, and 0 elsewhere |
 //! | `offset!(block.register)` | the word's place in its block; as a pattern, too |
 //!
 //! rust-hdl's kernels take literals only, so the names become numbers here, before it sees them.
@@ -27,7 +27,7 @@ impl Parse for Word {
     }
 }
 
-/// What stands in the brackets where it is about a field.
+/// Arguments of a macro about a field.
 struct Named {
     value: Expr,
     field: &'static Field,
@@ -98,7 +98,7 @@ impl Named {
     }
 }
 
-/// What a macro stands for; none for a macro of somebody else.
+/// Replacement of a macro call; `None` for other macros.
 fn number(call: &Macro) -> Option<syn::Result<TokenStream>> {
     let named = || call.parse_body::<Named>();
     let is = |name| call.path.is_ident(name);
@@ -137,7 +137,7 @@ impl VisitMut for Places {
                 *expr = plain;
             }
         }
-        // Names may stand in what is placed.
+        // The value that is placed may contain such macros, too.
         visit_expr_mut(self, expr);
     }
 

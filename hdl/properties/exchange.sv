@@ -2,7 +2,7 @@
 // refused_unless_quiet: A request begins only for a trigger, if it is known, and the line is HIGH and has been quiet since a reply that did not come whole.
 // quiet_after_reset: After a reset no request begins for 63 us, the longest pause before a reply, and then only when the line is at rest.
 // one_verdict: A trigger that meets no exchange has exactly one verdict, and there is none without.
-// request_as_asked: What goes out is a LOW start bit, sync code, ID and parity of the request, and a HIGH delimiter; behind the request the line is HIGH.
+// request_as_asked: A request is a LOW start bit, sync code, ID and parity, and a HIGH delimiter; after the request the line is HIGH.
 // header_as_asked: A reply is good only if its first eight bits are the sync code, the ID of the request and the right parity; without guards as long as that ID stays.
 // sum_as_received: A reply is good only if its bytes as sampled, the CRC among them, come to 0.
 reg f_owed; initial f_owed = 1'b0;

@@ -1,6 +1,6 @@
-// crc16_as_sent: The two bytes behind a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
+// crc16_as_sent: The two bytes following a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
 // whole_frames_only: What may be read ends with a frame: its end moves only when the last byte of a frame has been written.
-// never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it beside the bytes that wait.
+// never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it in addition to the bytes that wait.
 reg [15:0] f_crc; initial f_crc = 16'hffff;
 reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
 wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;
@@ -15,7 +15,7 @@ endfunction
 always @(posedge clock) begin
     f_byte <= set_byte;
     f_cycle <= cycle_at;
-    if (byte_end & !in_tail) f_crc <= f_crc_of(f_crc, byte_now, 4'd8);
+    if (byte_end & !in_tail) f_crc <= f_crc_of(f_crc, byte_held, 4'd8);
     if (!writing) f_crc <= 16'hffff;
 end
 // as the port says: what the set gives is there in time, and stays
@@ -23,12 +23,12 @@ always @* begin
     assume ((f_cycle < 4'd5) | (f_cycle == 4'd15) | (set_byte == f_byte));
 end
 always @* begin
-    crc16_as_sent: assert (!(byte_end & in_tail & !at[2] & !at[1]) | (byte_now == (at[0] ? f_crc[15:8] : f_crc[7:0])));
-    crc16_as_sent_so_far: assert (!writing | (crc == f_crc_of(f_crc, byte_now, f_bits)));
+    crc16_as_sent: assert (!(byte_end & in_tail & !at[2] & !at[1]) | (byte_held == (at[0] ? f_crc[15:8] : f_crc[7:0])));
+    crc16_as_sent_so_far: assert (!writing | (crc == f_crc_of(f_crc, byte_held, f_bits)));
     crc16_as_sent_tail: assert ((cycle_at == 4'd0) | (in_tail == (at[6:3] == TAIL_BLOCK)));
     crc16_as_sent_rest: assert (writing ? (byte_end == (cycle_at == 4'd15)) : ((cycle_at == 4'd0) & !byte_end));
-    crc16_as_sent_stays: assert (in_tail | !cycle_at[3] | (byte_now == f_byte));
-    crc16_as_sent_bytes: assert (!in_tail | at[2] | at[1] | (cycle_at < 4'd3) | (byte_now == (at[0] ? crc[15:8] : crc[7:0])));
+    crc16_as_sent_stays: assert (in_tail | !cycle_at[3] | (byte_held == f_byte));
+    crc16_as_sent_bytes: assert (!in_tail | at[2] | at[1] | (cycle_at < 4'd3) | (byte_held == (at[0] ? crc[15:8] : crc[7:0])));
     crc16_as_sent_ends: assert ((cycle_at < 4'd2) | ((is_past == (in_tail & at[2])) & (is_end == (in_tail & (&at[1:0])))));
 end
 reg f_end; initial f_end = 1'b1;

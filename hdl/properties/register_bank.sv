@@ -1,4 +1,4 @@
-// read_is_one_moment: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
+// read_is_one_snapshot: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
 // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins, whatever other channels owe.
 reg [1:0] f_came; initial f_came = 2'd0;
 always @(posedge clock) begin
@@ -12,4 +12,4 @@ always @* begin
 end
 reg f_reading; initial f_reading = 1'b0;
 always @(posedge clock) f_reading <= reading & !reset;
-always @* read_is_one_moment: assert (!f_reading | (!load & !show));
+always @* read_is_one_snapshot: assert (!f_reading | (!load & !show));

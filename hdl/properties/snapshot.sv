@@ -38,7 +38,7 @@ always @(posedge clock) begin
     if (first_fall | latched) f_newer <= 1'b1;
     if (reset) f_newer <= 1'b0;
 end
-always @* restored_same: assert (!f_past_valid | !unconfirmed | f_newer | ({earlier_width, earlier_f2, moment, earlier_valid} == {f_last[38:0], f_last_valid}));
+always @* restored_same: assert (!f_past_valid | !unconfirmed | f_newer | ({earlier_width, earlier_f2, stamp_pending, earlier_valid} == {f_last[38:0], f_last_valid}));
 // end
 // with SWAPS
 // the receiver has the position meanwhile: word_kept

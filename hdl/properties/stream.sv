@@ -1,5 +1,5 @@
 // one_set_per_trigger: A trigger while sets are collected has exactly one set, or is counted as lost; nothing else makes a set.
-// set_of_one_moment: Number, time and count of lost ones in the head of a set do not change while its frame is being written.
+// set_head_constant: Number, time and count of lost ones in the head of a set do not change while its frame is being written.
 // lost_counted: Each set that is lost is counted, up to 65535, until the host clears the count; those before a set up to 255.
 reg f_owed; initial f_owed = 1'b0;
 reg f_same; initial f_same = 1'b0;
@@ -16,8 +16,8 @@ always @* begin
     one_set_per_trigger_open: assert (f_owed == open);
 end
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-    if ($past(!buffer_idle)) set_of_one_moment: assert ($stable({sequence_taken, moment_taken, lost_taken}));
+    if ($past(!buffer_idle)) set_head_constant: assert ($stable({sequence_taken, time_taken, lost_taken}));
     if ($past(lost_now & !clear & !(&lost_all))) lost_counted: assert (lost_all == $past(lost_all) + 16'd1);
     if ($past(!lost_before_reset)) lost_counted_before: assert ((lost_before >= $past(lost_before)) & (!$past(lost_now & (lost_before != 8'hff)) | (lost_before == $past(lost_before) + 8'd1)));
-    if (f_same & $past(!buffer_idle)) set_of_one_moment_bytes: assert ($stable(head_byte));
+    if (f_same & $past(!buffer_idle)) set_head_constant_bytes: assert ($stable(head_byte));
 end

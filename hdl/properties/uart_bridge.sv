@@ -19,7 +19,7 @@ always @(posedge clock) begin
     f_asked_1 <= f_asked;
     if (receiver_strobe) case (f_bytes)
         4'd0: begin
-            f_first <= f_code & receiver_data[0] & !write_busy & !has_byte & !access_next & !access & !step_address;
+            f_first <= f_code & receiver_data[0] & !write_busy & !has_byte & !access_due & !access & !step_address;
             if (f_code) begin
                 f_bytes <= 4'd1;
                 f_is_write <= receiver_data[0];
@@ -62,7 +62,7 @@ wire [3:0] f_come = (f_whole | f_whole_1) ? 4'd4 : (f_bytes >= 4'd6) & (f_bytes 
 wire [31:0] f_mask = (f_come == 4'd0) ? 32'd0 : 32'hFFFFFFFF >> (6'd32 - {f_come, 3'd0});
 always @* begin
     write_is_whole: assert (!(access & write) | f_whole_1);
-    write_is_whole_next: assert (!(access_next & writing) | f_whole);
+    write_is_whole_next: assert (!(access_due & writing) | f_whole);
     write_is_whole_state: assert (
         ((state == BRIDGE_STATE_COMMAND) & (f_bytes == 4'd0)) |
         ((state == BRIDGE_STATE_LENGTH) & (f_bytes == 4'd1)) |
@@ -78,6 +78,6 @@ always @* begin
     first_word_as_sent_to_4: assert (!f_first | (f_bytes != 4'd4) | (out_of_range == (|f_address[15:0])));
     first_word_as_sent_to_5: assert (!f_first | (f_bytes != 4'd5) | ((out_of_range == (|f_address[23:3])) & (address[2:0] == f_address[2:0])));
     read_is_whole: assert (!(access & !write) | f_asked_1);
-    read_is_whole_next: assert (!(access_next & !writing) | f_asked);
+    read_is_whole_next: assert (!(access_due & !writing) | f_asked);
     read_is_whole_state: assert (!f_asked | (state == BRIDGE_STATE_READ));
 end

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Each bit is taken where the clock rises for the next one, so that cable and encoder have a whole period for it. A frame that goes on within
-//! tm brings the same position once more, behind one LOW bit: two copies that differ give no position.
+//! tm brings the same position once more, after one LOW bit: two copies that differ give no position.
 //!
 //! Reading order: [`protocol`] and [`cause`] (facts), [`asked`] (what a configuration asks for), [`specials`] (bits that are not position),
 //! [`port`] (an encoder as a channel of a card).

@@ -3,11 +3,11 @@
 //! ```text
 //! trigger, request -> Exchange -> tx, driver
 //!                      ^   |
-//! rx -> InputFilter ---+-> ReplyBytes -> Moments -> DSP bus
+//! rx -> InputFilter ---+-> ReplyBytes -> ResultBanks -> DSP bus
 //! ```
 //!
 //! Reading order: [`protocol`] and [`cause`] (facts), [`bit_grid`], [`field_order`], [`request_bits`] (parts), [`exchange`] (order
-//! and checks), [`reply_bytes`], [`verdict_bytes`], [`moments`] (words for a processor), [`dsp`]; [`port`] is the same encoder
+//! and checks), [`reply_bytes`], [`verdict_bytes`], [`result_banks`] (words for a processor), [`dsp`]; [`port`] is the same encoder
 //! as a channel of a card, [`channel`] a receiver whose results are signals.
 
 pub mod asked;
@@ -18,7 +18,6 @@ pub(crate) mod config;
 pub mod dsp;
 pub mod exchange;
 pub mod field_order;
-pub mod moments;
 pub mod outcome;
 pub mod port;
 pub mod ports;
@@ -26,4 +25,5 @@ pub mod protocol;
 pub mod reply;
 pub mod reply_bytes;
 pub mod request_bits;
+pub mod result_banks;
 pub mod verdict_bytes;

@@ -81,32 +81,59 @@ module s6_two_channel_card_core (
     // The channel's last result is a good position.
     output wire         led_channel1_o
 );
+    // Trigger of each channel.
     wire         trigger_of_0;
+    // Trigger of each channel.
     wire         trigger_of_1;
+    // Byte of the set, from the last channel down to the first.
     wire   [7:0] set_byte_0;
+    // Byte of the set, from the last channel down to the first.
     wire   [7:0] set_byte_1;
+    // High if one of these channels has not brought its result yet.
     wire         set_owes_0;
+    // High if one of these channels has not brought its result yet.
     wire         set_owes_1;
+    // High if the result of one of these channels has been replaced.
     wire         set_replaced_0;
+    // High if the result of one of these channels has been replaced.
     wire         set_replaced_1;
+    // High for one cycle when a set is closed.
     wire         set_taken_0;
+    // Block of the set that is asked for.
     wire   [3:0] set_block_0;
+    // Byte of that block.
     wire   [2:0] set_byte_at_0;
+    // Read bytes of stream, interrupt and additional data.
     wire   [7:0] part_byte_0;
+    // Configuration byte between two channels on the ring.
     wire   [8:0] ring_link_0;
+    // Configuration byte between two channels on the ring.
     wire   [8:0] ring_link_1;
+    // Configuration byte between two channels on the ring.
     wire   [8:0] ring_link_2;
+    // Read byte of the channels, from the first to the last.
     wire   [7:0] read_link_1;
+    // Read byte of the channels, from the first to the last.
     wire   [7:0] read_link_2;
+    // High if one of these channels takes the trigger, from the first to the last.
     wire         taken_1;
+    // High if one of these channels takes the trigger, from the first to the last.
     wire         taken_2;
+    // High if one of these channels owes a result.
     wire         owes_1;
+    // High if one of these channels owes a result.
     wire         owes_2;
+    // High if one of these channels has brought its result.
     wire         brought_1;
+    // High if one of these channels has brought its result.
     wire         brought_2;
+    // High for one cycle when a channel takes a trigger.
     wire         new_set;
+    // High if the last result of one of these channels is an error, or it raises an alarm.
     wire         faulty_1;
+    // High if the last result of one of these channels is an error, or it raises an alarm.
     wire         faulty_2;
+    // Time in system clock cycles; its bits make the LED blink.
     wire  [31:0] now;
     wire  [31:0] trigger_trigger_count;
     wire         bank_begins;

@@ -7,10 +7,10 @@
 // Registers of one channel: the result as the host reads it, and the configuration.
 //
 // channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
-// ring block of the channel --(ring stands still, channel not busy, no trigger)--> configuration of the channel
+// ring block of the channel --(ring at rest, channel not busy, no trigger)--> configuration of the channel
 //
-// The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. What stands for longer
-// than a trigger says so: the age counts the time that the words are held, stale a trigger that has come since. A byte that is not selected
+// The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. Words that are held for longer
+// than a trigger show it: the age counts on while they are held, and stale reports a trigger that has come since. A byte that is not selected
 // is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
 module s6_two_channel_channel_registers (
     // System clock.
@@ -79,9 +79,9 @@ module s6_two_channel_channel_registers (
     output wire   [7:0] read_out,
     // The configuration ring moves on by one byte.
     input  wire         ring_turn,
-    // The configuration ring stands still, its words are in place.
+    // The configuration ring is at rest, its words are in place.
     input  wire         ring_home,
-    // Byte from the ring block behind, its parity in bit 8.
+    // Byte from the following ring block, its parity in bit 8.
     input  wire   [8:0] ring_in,
     // Byte to the ring block in front.
     output wire   [8:0] ring_out,
@@ -102,70 +102,109 @@ module s6_two_channel_channel_registers (
     // Data must fall within this many system clock cycles after the frame.
     output wire  [12:0] recovery_limit_cycles
 );
-    wire         behind_now;
+    // newer_trigger, with the trigger or result of this cycle.
+    wire         newer_trigger_now;
+    // stale, with the trigger or load of this cycle.
     reg          stale_now;
+    // Age before the tick of this cycle.
     reg   [15:0] age_base;
+    // High if the age rises by one in this cycle.
     reg          age_tick;
+    // Age with the tick or load of this cycle.
     wire  [15:0] age_now;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_0;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_1;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_2;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_3;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_4;
+    // Words of the result as the channel gives it now.
     wire  [31:0] word_5;
+    // Held words, with age and stale.
     wire  [31:0] shown_0;
+    // Held words, with age and stale.
     wire  [31:0] shown_1;
+    // Held words, with age and stale.
     wire  [31:0] shown_2;
+    // Held words, with age and stale.
     wire  [31:0] shown_3;
+    // Held words, with age and stale.
     wire  [31:0] shown_4;
+    // Held words, with age and stale.
     wire  [31:0] shown_5;
+    // High from a trigger that the channel takes until the result of that trigger.
     reg          waiting; initial waiting = 1'b0;
     reg          waiting_next;
-    reg          behind; initial behind = 1'b0;
+    // High if a trigger has come since the last result.
+    reg          newer_trigger; initial newer_trigger = 1'b0;
+    // High if a trigger has come since the trigger of the held result.
     reg          stale; initial stale = 1'b0;
+    // stale as the host reads it; frozen while a word is read.
     reg          stale_shown; initial stale_shown = 1'b0;
     reg          stale_shown_next;
+    // Age of the held position in microseconds, up to 65535; loaded with the held words.
     reg   [15:0] age; initial age = 16'd0;
+    // Age as the host reads it; frozen while a word is read.
     reg   [15:0] age_shown; initial age_shown = 16'd0;
     reg   [15:0] age_shown_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_0; initial held_0 = 32'd0;
     reg   [31:0] held_0_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_1; initial held_1 = 32'd0;
     reg   [31:0] held_1_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_2; initial held_2 = 32'd0;
     reg   [31:0] held_2_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_3; initial held_3 = 32'd0;
     reg   [31:0] held_3_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_4; initial held_4 = 32'd0;
     reg   [31:0] held_4_next;
+    // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_5; initial held_5 = 32'd0;
     reg   [31:0] held_5_next;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_0; initial byte_0 = 8'd0;
     reg    [7:0] byte_0_next;
     wire         byte_0_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_1; initial byte_1 = 8'd0;
     reg    [7:0] byte_1_next;
     wire         byte_1_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_2; initial byte_2 = 8'd0;
     reg    [7:0] byte_2_next;
     wire         byte_2_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_3; initial byte_3 = 8'd0;
     reg    [7:0] byte_3_next;
     wire         byte_3_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_4; initial byte_4 = 8'd0;
     reg    [7:0] byte_4_next;
     wire         byte_4_reset;
+    // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_5; initial byte_5 = 8'd0;
     reg    [7:0] byte_5_next;
     wire         byte_5_reset;
+    // OR of these bytes; 0 while this channel is not read.
     reg    [7:0] read_byte; initial read_byte = 8'd0;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
+    // Configuration word 0 in use: clock and frame; copied from the ring while the channel is idle.
     reg   [31:0] config0; initial config0 = 32'h381d0020;
     reg   [31:0] config0_next;
+    // Configuration word 1 in use: timing; copied from the ring while the channel is idle.
     reg   [31:0] config1; initial config1 = 32'h20800b8;
     reg   [31:0] config1_next;
+    // Configuration word 2 in use: limits; copied from the ring while the channel is idle.
     reg   [31:0] config2; initial config2 = 32'hc501012;
     reg   [31:0] config2_next;
 
@@ -195,7 +234,7 @@ module s6_two_channel_channel_registers (
         config0_next = config0;
         config1_next = config1;
         config2_next = config2;
-        // Not in the cycle of a trigger either: its frame has what was looked at when it was taken.
+        // Not in the cycle of a trigger either: its frame uses the settings that were checked with it.
         if (ring_home & !busy & !trigger) begin
             config0_next = ring_word0;
             config1_next = ring_word1;
@@ -206,14 +245,14 @@ module s6_two_channel_channel_registers (
     assign owes = waiting & !result_strobe;
     assign brought = waiting & result_strobe;
     // A trigger that comes with a result is newer than it.
-    assign behind_now = trigger | (behind & !result_strobe);
+    assign newer_trigger_now = trigger | (newer_trigger & !result_strobe);
 
     always @* begin
         stale_now = stale | trigger;
         age_base = age;
         age_tick = tick_us & !(&age);
         if (load) begin
-            stale_now = behind_now;
+            stale_now = newer_trigger_now;
             age_base = age_us;
             age_tick = 1'b0;
         end
@@ -393,7 +432,7 @@ module s6_two_channel_channel_registers (
     assign filter_cycles = config1[27:24];
     assign start_timeout_us = config2[11:0];
     assign recovery_limit_cycles = config2[28:16];
-    // With settings that nobody wrote nothing goes out: these are no commands.
+    // A channel with corrupted settings sends no command: these codes are none.
     assign command = config0[29:24];
     assign byte_0_reset = word_skip[0];
     assign byte_1_reset = word_skip[1];
@@ -405,7 +444,7 @@ module s6_two_channel_channel_registers (
     always @(posedge clock) begin
         if (reset) begin
             waiting <= 1'b0;
-            behind <= 1'b0;
+            newer_trigger <= 1'b0;
             stale <= 1'b0;
             stale_shown <= 1'b0;
             age <= 16'd0;
@@ -421,7 +460,7 @@ module s6_two_channel_channel_registers (
             config2 <= 32'hc501012;
         end else begin
             waiting <= waiting_next;
-            behind <= behind_now;
+            newer_trigger <= newer_trigger_now;
             stale <= stale_now;
             stale_shown <= stale_shown_next;
             age <= age_now;
@@ -501,9 +540,9 @@ module s6_two_channel_channel_registers (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // held_together: All words of a result that are held change in one cycle, when they are told to follow it, and in no other one.
+    // held_together: All words of a result that are held change in one cycle, when they are loaded, and in no other one.
     // age_while_shown: Age and `stale` of what is held go on only while nothing is read.
-    // age_stands: The age of what is held counts microseconds up to 65535, and stands there.
+    // age_saturates: The age of what is held counts microseconds up to 65535, and stays there.
     // settings_stay: Settings change only while the channel is not busy, and not in the cycle of a trigger.
     // owed_once: A channel owes one result for a trigger that it takes, until that comes.
     reg f_past_valid; initial f_past_valid = 1'b0;
@@ -513,7 +552,7 @@ module s6_two_channel_channel_registers (
             if ($past(!load)) `FORMAL_LABEL(held_together) assert ($stable({held_0, held_1, held_2, held_3, held_4, held_5}));
             if ($past(!show)) `FORMAL_LABEL(age_while_shown) assert ($stable({age_shown, stale_shown}));
             if ($past(busy | trigger)) `FORMAL_LABEL(settings_stay) assert ($stable({config0, config1, config2}));
-            if ($past(!load)) `FORMAL_LABEL(age_stands) assert (age == $past(age) + {15'd0, $past(tick_us & (age != 16'hffff))});
+            if ($past(!load)) `FORMAL_LABEL(age_saturates) assert (age == $past(age) + {15'd0, $past(tick_us & (age != 16'hffff))});
             if ($past(result_strobe & !new_set)) `FORMAL_LABEL(owed_once) assert (!waiting);
             if ($past(!result_strobe & !new_set)) `FORMAL_LABEL(owed_once_kept) assert ($stable(waiting));
             if ($past(new_set)) `FORMAL_LABEL(owed_once_taken) assert (waiting == $past(trigger & !busy));

@@ -11,7 +11,7 @@
 // head <- [card block: word 0 .. 2] <- [channel 0: word 0 .. 2] <- ... <- [last channel] <- head, or a written byte +
 //
 // A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
-// in place only while the ring stands still, so the blocks work from copies that are taken then.
+// in place only while the ring is at rest, so the blocks work from copies that are taken then.
 module s6_two_channel_config_ring_1 (
     // System clock.
     input  wire         clock,
@@ -19,21 +19,24 @@ module s6_two_channel_config_ring_1 (
     input  wire         reset,
     // The ring moves on by one byte.
     input  wire         turn,
-    // Byte from the block behind, its parity in bit 8.
+    // Byte from the following block, its parity in bit 8.
     input  wire   [8:0] byte_in,
     // Byte that goes to the block in front: the most significant one of word 0.
     output wire   [8:0] byte_out,
-    // Word 0, while the ring stands still.
+    // Word 0, while the ring is at rest.
     output wire  [31:0] word0,
-    // Word 1, while the ring stands still.
+    // Word 1, while the ring is at rest.
     output wire  [31:0] word1,
-    // Word 2, while the ring stands still.
+    // Word 2, while the ring is at rest.
     output wire  [31:0] word2
 );
+    // Word 0 while the ring is at rest; its top byte leaves first.
     reg   [31:0] w0; initial w0 = 32'd3;
     reg   [31:0] w0_next;
+    // Word 1 while the ring is at rest.
     reg   [31:0] w1; initial w1 = 32'h2710;
     reg   [31:0] w1_next;
+    // Word 2 while the ring is at rest; bytes enter at its low end.
     reg   [31:0] w2; initial w2 = 32'd0;
     reg   [31:0] w2_next;
     wire         _unused_ok = &{1'b0, byte_in[8]};

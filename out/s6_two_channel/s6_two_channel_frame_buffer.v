@@ -43,51 +43,80 @@ module s6_two_channel_frame_buffer (
     // Strobe, with ready only: the byte is taken.
     input  wire         take
 );
+    // Number of the block following the last channel's.
     localparam   [3:0] TAIL_BLOCK = 4'd3;
+    // Highest address of the buffer.
     localparam  [12:0] MASK = 13'h7ff;
+    // Most waiting bytes with which a whole frame still fits.
     localparam  [12:0] MOST_USED = 13'h7e3;
+    // Generator of the CRC, without x^16.
     localparam  [15:0] POLYNOMIAL = 16'h1021;
 
+    // Bit of the byte that enters the CRC in this cycle.
     wire   [2:0] bit_index;
+    // Bit that the CRC feeds back.
     wire         feedback;
+    // High for one cycle when the write address moves on.
     wire         advance;
+    // High for one cycle when the buffer is written.
     wire         write;
+    // Address that is written: of the byte, or of the code byte.
     reg   [12:0] write_address;
+    // Byte that is written: data, distance to the next zero, or the end.
     reg    [7:0] write_byte;
+    // Byte at the read address.
     wire   [7:0] read_byte;
     wire  [10:0] ram2k_0_read_address;
     reg    [7:0] ram2k_0_read_data; initial ram2k_0_read_data = 8'd0;
     wire  [10:0] ram2k_0_write_address;
+    // High while a frame is written.
     reg          writing; initial writing = 1'b0;
     reg          writing_next;
+    // Which of the 16 cycles of the byte this is.
     reg    [3:0] cycle_at; initial cycle_at = 4'd0;
     reg    [3:0] cycle_at_next;
+    // Byte of the set that is written: block in bits 6 to 3, byte in bits 2 to 0.
     reg    [6:0] at; initial at = 7'd0;
     reg    [6:0] at_next;
     wire         at_reset;
+    // High while the bytes following the last block are written: CRC and end.
     reg          in_tail; initial in_tail = 1'b0;
+    // High while the end of the frame is written.
     reg          is_end; initial is_end = 1'b0;
+    // High after the end of the frame, until the counters have settled.
     reg          is_past; initial is_past = 1'b0;
-    reg    [7:0] byte_now; initial byte_now = 8'd0;
-    reg    [7:0] byte_now_next;
+    // Byte that is written.
+    reg    [7:0] byte_held; initial byte_held = 8'd0;
+    reg    [7:0] byte_held_next;
+    // High if that byte is 0, which COBS replaces.
     reg          is_zero; initial is_zero = 1'b0;
+    // High in the last cycle of a byte.
     reg          byte_end; initial byte_end = 1'b0;
+    // CRC of the bytes so far; the start value while no frame is written.
     reg   [15:0] crc; initial crc = 16'hffff;
     reg   [15:0] crc_next;
     wire         crc_reset;
+    // Distance from the last code byte: bytes since then, plus one.
     reg    [6:0] run; initial run = 7'd1;
     reg    [6:0] run_next;
     wire         run_reset;
+    // Address of the next byte.
     reg   [12:0] write_at; initial write_at = 13'd0;
     reg   [12:0] write_at_next;
+    // Address that is kept free for the next code byte.
     reg   [12:0] code_at; initial code_at = 13'd0;
     reg   [12:0] code_at_next;
+    // Address following the last whole frame: the reader stops there.
     reg   [12:0] start_at; initial start_at = 13'd0;
     reg   [12:0] start_at_next;
+    // Address of the next byte to read.
     reg   [12:0] read_at; initial read_at = 13'd0;
     reg   [12:0] read_at_next;
+    // Bytes that wait to be read.
     reg   [12:0] used; initial used = 13'd0;
+    // High if a whole frame fits.
     reg          fits; initial fits = 1'b1;
+    // High in the cycle after a byte was taken: used is not up to date.
     reg          took; initial took = 1'b0;
     wire         _unused_ok = &{1'b0, write_address[12:11]};
 
@@ -144,17 +173,17 @@ module s6_two_channel_frame_buffer (
     assign byte_at = at[2:0];
 
     always @* begin
-        byte_now_next = set_byte;
+        byte_held_next = set_byte;
         if (in_tail & !(|at[2:1])) begin
-            byte_now_next = crc[7:0];
+            byte_held_next = crc[7:0];
             if (at[0]) begin
-                byte_now_next = crc[15:8];
+                byte_held_next = crc[15:8];
             end
         end
     end
     // A bit of the CRC in each of the second eight cycles.
     assign bit_index = ~cycle_at[2:0];
-    assign feedback = crc[15] ^ byte_now[bit_index];
+    assign feedback = crc[15] ^ byte_held[bit_index];
 
     always @* begin
         crc_next = crc;
@@ -182,7 +211,7 @@ module s6_two_channel_frame_buffer (
 
     always @* begin
         write_address = write_at;
-        write_byte = byte_now;
+        write_byte = byte_held;
         if (is_zero) begin
             write_address = code_at;
             write_byte = {1'b0, run};
@@ -207,7 +236,7 @@ module s6_two_channel_frame_buffer (
             in_tail <= 1'b0;
             is_end <= 1'b0;
             is_past <= 1'b0;
-            byte_now <= 8'd0;
+            byte_held <= 8'd0;
             is_zero <= 1'b0;
             byte_end <= 1'b0;
             write_at <= 13'd0;
@@ -224,8 +253,8 @@ module s6_two_channel_frame_buffer (
             in_tail <= at[6:3] == TAIL_BLOCK;
             is_end <= in_tail & (&at[1:0]);
             is_past <= in_tail & at[2];
-            byte_now <= byte_now_next;
-            is_zero <= !(|byte_now);
+            byte_held <= byte_held_next;
+            is_zero <= !(|byte_held);
             byte_end <= writing & (cycle_at == 4'd14);
             write_at <= write_at_next;
             code_at <= code_at_next;
@@ -262,6 +291,7 @@ module s6_two_channel_frame_buffer (
         end
     end
 
+    // Buffer of 2048 bytes.
     reg [7:0] ram2k_0 [0:2047];
     integer ram2k_0_word;
     initial begin
@@ -284,9 +314,9 @@ module s6_two_channel_frame_buffer (
 `endif
 `ifndef FORMAL_ANY_STATE
     localparam         HAS_OTHER_FRAMES = 1'b0;
-    // crc16_as_sent: The two bytes behind a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
+    // crc16_as_sent: The two bytes following a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
     // whole_frames_only: What may be read ends with a frame: its end moves only when the last byte of a frame has been written.
-    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it beside the bytes that wait.
+    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it in addition to the bytes that wait.
     reg [15:0] f_crc; initial f_crc = 16'hffff;
     reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
     wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;
@@ -301,7 +331,7 @@ module s6_two_channel_frame_buffer (
     always @(posedge clock) begin
         f_byte <= set_byte;
         f_cycle <= cycle_at;
-        if (byte_end & !in_tail) f_crc <= f_crc_of(f_crc, byte_now, 4'd8);
+        if (byte_end & !in_tail) f_crc <= f_crc_of(f_crc, byte_held, 4'd8);
         if (!writing) f_crc <= 16'hffff;
     end
     // as the port says: what the set gives is there in time, and stays
@@ -309,12 +339,12 @@ module s6_two_channel_frame_buffer (
         assume ((f_cycle < 4'd5) | (f_cycle == 4'd15) | (set_byte == f_byte));
     end
     always @* begin
-        `FORMAL_LABEL(crc16_as_sent) assert (!(byte_end & in_tail & !at[2] & !at[1]) | (byte_now == (at[0] ? f_crc[15:8] : f_crc[7:0])));
-        `FORMAL_LABEL(crc16_as_sent_so_far) assert (!writing | (crc == f_crc_of(f_crc, byte_now, f_bits)));
+        `FORMAL_LABEL(crc16_as_sent) assert (!(byte_end & in_tail & !at[2] & !at[1]) | (byte_held == (at[0] ? f_crc[15:8] : f_crc[7:0])));
+        `FORMAL_LABEL(crc16_as_sent_so_far) assert (!writing | (crc == f_crc_of(f_crc, byte_held, f_bits)));
         `FORMAL_LABEL(crc16_as_sent_tail) assert ((cycle_at == 4'd0) | (in_tail == (at[6:3] == TAIL_BLOCK)));
         `FORMAL_LABEL(crc16_as_sent_rest) assert (writing ? (byte_end == (cycle_at == 4'd15)) : ((cycle_at == 4'd0) & !byte_end));
-        `FORMAL_LABEL(crc16_as_sent_stays) assert (in_tail | !cycle_at[3] | (byte_now == f_byte));
-        `FORMAL_LABEL(crc16_as_sent_bytes) assert (!in_tail | at[2] | at[1] | (cycle_at < 4'd3) | (byte_now == (at[0] ? crc[15:8] : crc[7:0])));
+        `FORMAL_LABEL(crc16_as_sent_stays) assert (in_tail | !cycle_at[3] | (byte_held == f_byte));
+        `FORMAL_LABEL(crc16_as_sent_bytes) assert (!in_tail | at[2] | at[1] | (cycle_at < 4'd3) | (byte_held == (at[0] ? crc[15:8] : crc[7:0])));
         `FORMAL_LABEL(crc16_as_sent_ends) assert ((cycle_at < 4'd2) | ((is_past == (in_tail & at[2])) & (is_end == (in_tail & (&at[1:0])))));
     end
     reg f_end; initial f_end = 1'b1;

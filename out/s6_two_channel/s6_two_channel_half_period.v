@@ -30,12 +30,17 @@ module s6_two_channel_half_period (
     // Cycles until tick and one more: 1 with tick.
     output wire   [9:0] left_cycles
 );
+    // Length of a half, in system clock cycles, rounded down.
     wire   [9:0] half_cycles;
+    // High in the last cycle of the half.
     reg          tick_now;
+    // Cycles of the half under way, plus 2; compared one cycle ahead.
     reg    [9:0] count; initial count = 10'd2;
     reg    [9:0] count_next;
+    // High in the last cycle of a half, unless it is a longer second half.
     reg          hit; initial hit = 1'b0;
     reg          hit_next;
+    // High one cycle after hit: last cycle of a second half that is one cycle longer.
     reg          hit_late; initial hit_late = 1'b0;
     reg          hit_late_next;
 

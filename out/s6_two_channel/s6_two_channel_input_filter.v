@@ -24,29 +24,41 @@ module s6_two_channel_input_filter (
     // High in the first cycle in which level is high, or has changed.
     output wire         edge_strobe
 );
+    // Samples in a row that the filter ignores.
     reg    [4:0] limit;
+    // Sample of the cycle, after the majority; with two samples a cycle the second one.
     wire         sample;
+    // Filtered level between the two samples of the cycle.
     reg          middle;
+    // different between the two samples of the cycle.
     reg    [4:0] middle_different;
+    // Filtered level after this cycle.
     reg          settled;
+    // High if an edge is before both samples of the cycle.
     wire         edge_first;
+    // Pin, first synchroniser stage.
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync1; initial sync1 = 1'b0;
+    // Pin, second synchroniser stage.
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync2; initial sync2 = 1'b0;
+    // Pin, third synchroniser stage.
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync3; initial sync3 = 1'b0;
+    // Consecutive samples that differ from the filtered level; 0 when one agrees with it.
     reg    [4:0] different; initial different = 5'd0;
     reg    [4:0] different_next;
-    reg          level_now; initial level_now = 1'b0;
-    reg          edge_now; initial edge_now = 1'b0;
+    // Level after the filter.
+    reg          filtered; initial filtered = 1'b0;
+    // High for one cycle when the filtered level has risen; with both_edges also when it has fallen.
+    reg          edge_found; initial edge_found = 1'b0;
 
     assign sample = sync3;
 
     always @* begin
         // One step of the filter, or two.
         limit = {1'b0, filter_cycles};
-        middle = level_now;
+        middle = filtered;
         middle_different = different;
         settled = middle;
         different_next = 5'd0;
@@ -58,9 +70,9 @@ module s6_two_channel_input_filter (
             end
         end
     end
-    assign edge_first = middle & !level_now;
-    assign level = level_now;
-    assign edge_strobe = edge_now;
+    assign edge_first = middle & !filtered;
+    assign level = filtered;
+    assign edge_strobe = edge_found;
 
     always @(posedge clock) begin
         if (reset) begin
@@ -68,15 +80,15 @@ module s6_two_channel_input_filter (
             sync2 <= 1'b0;
             sync3 <= 1'b0;
             different <= 5'd0;
-            level_now <= 1'b0;
-            edge_now <= 1'b0;
+            filtered <= 1'b0;
+            edge_found <= 1'b0;
         end else begin
             sync1 <= pin;
             sync2 <= sync1;
             sync3 <= sync2;
             different <= different_next;
-            level_now <= settled;
-            edge_now <= edge_first | (settled & !middle);
+            filtered <= settled;
+            edge_found <= edge_first | (settled & !middle);
         end
     end
 
@@ -90,13 +102,13 @@ module s6_two_channel_input_filter (
     localparam         HAS_DOUBLE = 1'b0;
     // short_pulses_ignored unless HAS_DOUBLE (samples at both edges): The level follows DATA only after more samples in a row than the filter ignores.
     reg [4:0] f_other; initial f_other = 5'd0;
-    wire f_differs = sample != level_now;
+    wire f_differs = sample != filtered;
     always @(posedge clock) begin
         f_other <= 5'd0;
         if (f_differs & !reset) f_other <= (f_other == 5'd31) ? f_other : f_other + 5'd1;
     end
     always @* begin
-        `FORMAL_LABEL(short_pulses_ignored) assert (HAS_DOUBLE | (settled == level_now) | (f_differs & (f_other >= {1'b0, filter_cycles})));
+        `FORMAL_LABEL(short_pulses_ignored) assert (HAS_DOUBLE | (settled == filtered) | (f_differs & (f_other >= {1'b0, filter_cycles})));
         `FORMAL_LABEL(short_pulses_ignored_count) assert (HAS_DOUBLE | (different <= f_other));
     end
 `endif

@@ -13,14 +13,14 @@
 //        ring byte ---------OR--> read_byte
 //        results of channels+
 //
-// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and stand until
-// done; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
+// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and kept until
+// done; an access that comes before is not begun. Only which byte is shown follows the front: a front that changes the address reads another byte.
 //
 // Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them, and not from
 // the first to the last result of a trigger: half of it is new, the other half is not.
 //
 // The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it would have no
-// end. For a host that reads in step with the triggers, so that there never is a moment between two reads in which the words may follow,
+// end. For a host that reads in step with the triggers, so that the words may never follow between two reads,
 // they follow as the read begins, if the second trigger has come by then. See docs/host-link.md.
 module s6_two_channel_register_bank (
     // System clock.
@@ -69,7 +69,7 @@ module s6_two_channel_register_bank (
     input  wire   [7:0] channel_byte,
     // The configuration ring moves on by one byte.
     output wire         ring_turn,
-    // The configuration ring stands still.
+    // The configuration ring is at rest.
     output wire         ring_home,
     // Byte from the first channel's ring block, its parity in bit 8.
     input  wire   [8:0] ring_in,
@@ -90,84 +90,141 @@ module s6_two_channel_register_bank (
     // Period of the trigger timer.
     output wire  [23:0] period_cycles
 );
+    // Word protocols.
     localparam  [31:0] PROTOCOLS = 32'd0;
+    // Word id.
     localparam  [31:0] ID = 32'h456e4474;
+    // Word version.
     localparam  [31:0] VERSION = 32'h1010000;
+    // Word capabilities.
     localparam  [31:0] CAPABILITIES = 32'h80f3002;
+    // Word system_hz.
     localparam  [31:0] SYSTEM_HZ = 32'd100000000;
+    // Word configuration_hash.
     localparam  [31:0] CONFIGURATION_HASH = 32'h4372d9d9;
+    // Number of the last block on the ring, that of the last channel.
     localparam   [3:0] LAST_BLOCK = 4'd2;
+    // Address of the word trigger_count.
     localparam   [8:0] TRIGGER_COUNT_AT = 9'd8;
+    // Address of the word trigger_now.
     localparam   [8:0] TRIGGER_NOW_AT = 9'd9;
+    // Address of the word calibrate.
     localparam   [8:0] CALIBRATE_AT = 9'd10;
 
+    // High while the host reads or holds results: these must not change.
     wire         blocked_now;
+    // High while some results of the last trigger have come and others are missing.
     wire         mixed_now;
+    // High in each cycle in which the held results follow the channels.
     wire         load_now;
+    // High while an access runs: a new one is ignored.
     wire         busy;
+    // High for one cycle when an access starts.
     wire         starts;
+    // High if the front's address is below 0x200.
     wire         low_page;
+    // Low nine bits of the front's word address.
     wire   [8:0] low_address;
+    // High in the last cycle of turning: the turn is complete, or the byte is ready.
     reg          at_end;
+    // High if the access needs a whole turn of the ring, or the time of one.
     wire         whole_turn;
+    // High while the counters are at a byte of the accessed configuration word.
     wire         at_word;
+    // High while byte_at is at the last byte of a block.
     wire         block_end;
+    // High if the front's address is one of the card's first 16 words.
     wire         card_page;
+    // High for one cycle when a write to one of the low words starts.
     wire         strobe;
+    // High if the front's address is a word of a channel's result.
     wire         result_page;
+    // Byte of the word to write that is next.
     wire   [7:0] written;
+    // Byte that goes to the end of the ring: the one from its front, or the written one; parity in bit 8.
     reg    [8:0] head;
+    // Constant word that the held address selects; 0 if it selects none.
     reg   [31:0] rom_word;
     wire   [8:0] ring_byte_out;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
+    // Word address of the access under way; follows the front while no access runs.
     reg   [10:0] held_address; initial held_address = 11'd0;
     reg   [10:0] held_address_next;
+    // High from the start of an access until its last byte has passed or its byte is ready.
     reg          turning; initial turning = 1'b0;
     reg          turning_next;
+    // Byte of the ring block that is next at the head, 0 to 11; 0 while no access runs.
     reg    [3:0] byte_at; initial byte_at = 4'd0;
     reg    [3:0] byte_at_next;
+    // Block of the ring that is next at the head: 0 = the card, n + 1 = channel n.
     reg    [3:0] block_at; initial block_at = 4'd0;
     reg    [3:0] block_at_next;
+    // High while the ring turns: one cycle after turning, for accesses that need a whole turn.
     reg          turn; initial turn = 1'b0;
+    // High while a byte of the accessed configuration word is at the head.
     reg          passes; initial passes = 1'b0;
+    // High while the byte of passes is the one that the front asks for.
     reg          byte_passes; initial byte_passes = 1'b0;
+    // High for one cycle after the last cycle of turning.
     reg          ended; initial ended = 1'b0;
-    reg          done_now; initial done_now = 1'b0;
-    reg          write_now; initial write_now = 1'b0;
-    reg          write_now_next;
+    // High for one cycle when the access has ended, a cycle after ended.
+    reg          done_strobe; initial done_strobe = 1'b0;
+    // High if the access under way is a write; set or cleared when an access starts.
+    reg          is_write; initial is_write = 1'b0;
+    reg          is_write_next;
+    // High if the accessed word is a configuration word on the ring.
     reg          config_page; initial config_page = 1'b0;
     reg          config_page_next;
+    // Result words that are not read, one bit each; low for the selected word only.
     reg    [5:0] skipped_words; initial skipped_words = 6'd63;
     reg    [5:0] skipped_words_next;
+    // Channels whose results are not read, one bit each; low for the selected channel only.
     reg    [7:0] skipped_channels; initial skipped_channels = 8'd255;
     reg    [7:0] skipped_channels_next;
+    // High unless the front's address is one of the card's constant words.
     reg          rom_skip; initial rom_skip = 1'b1;
+    // High unless the front's address is the word trigger_count.
     reg          count_skip; initial count_skip = 1'b1;
+    // Selected byte of the constant word; 0 while rom_skip is high.
     reg    [7:0] rom_byte; initial rom_byte = 8'd0;
     reg    [7:0] rom_byte_next;
+    // Trigger count of the held results; loaded together with them.
     reg   [31:0] count_held; initial count_held = 32'd0;
     reg   [31:0] count_held_next;
+    // Selected byte of count_held; 0 while count_skip is high.
     reg    [7:0] count_byte; initial count_byte = 8'd0;
     reg    [7:0] count_byte_next;
+    // Configuration byte that was read; cleared when an access starts.
     reg    [7:0] ring_byte; initial ring_byte = 8'd0;
     reg    [7:0] ring_byte_next;
+    // Byte that the front reads: OR of all sources, of which at most one is not 0.
     reg    [7:0] byte_value; initial byte_value = 8'd0;
+    // High for one cycle after a write of the trigger bit.
     reg          trigger_strobe; initial trigger_strobe = 1'b0;
+    // One bit per channel, high for one cycle after a write of the word calibrate.
     reg    [7:0] calibrate_strobe; initial calibrate_strobe = 8'd0;
     reg    [7:0] calibrate_strobe_next;
+    // Enabled trigger sources; copied from the ring while it is at rest.
     reg    [2:0] active_sources; initial active_sources = 3'd3;
     reg    [2:0] active_sources_next;
+    // Period of the trigger timer; copied from the ring while it is at rest.
     reg   [23:0] active_period; initial active_period = 24'h2710;
     reg   [23:0] active_period_next;
+    // High while the host holds the results; copied from the ring while it is at rest.
     reg          hold; initial hold = 1'b0;
     reg          hold_next;
+    // blocked_now of the cycle before: high while the host reads or holds results.
     reg          blocked; initial blocked = 1'b1;
+    // reading of the cycle before.
     reg          read_before; initial read_before = 1'b1;
+    // High from the first to the last result of a trigger; cleared by the next trigger.
     reg          mixed; initial mixed = 1'b0;
+    // High if a trigger has been taken since the held results were last loaded.
     reg          one_gone; initial one_gone = 1'b0;
     reg          one_gone_next;
+    // High if two triggers have been taken since the held results were last loaded.
     reg          overdue; initial overdue = 1'b0;
     reg          overdue_next;
     wire         _unused_ok = &{1'b0, write_data[23:8], ring_word0[31:3], ring_word1[31:24], ring_word2[31:1]};
@@ -193,7 +250,7 @@ module s6_two_channel_register_bank (
             hold_next = ring_word2[0];
         end
     end
-    // What an access is stands from its begin to its end, whatever the front shows.
+    // Address and direction of an access are kept from its start to its end, whatever the front shows.
     assign busy = turning | ended;
 
     always @* begin
@@ -232,7 +289,7 @@ module s6_two_channel_register_bank (
         byte_at_next = byte_at;
         block_at_next = block_at;
         turning_next = turning;
-        write_now_next = write_now;
+        is_write_next = is_write;
         if (turning) begin
             byte_at_next = byte_at + 4'd1;
             if (block_end) begin
@@ -248,12 +305,12 @@ module s6_two_channel_register_bank (
         end
         if (starts) begin
             turning_next = 1'b1;
-            write_now_next = write;
+            is_write_next = write;
         end
     end
     assign ring_turn = turn;
     assign ring_home = !turn;
-    assign done = done_now;
+    assign done = done_strobe;
     // Configuration: the ring carries 3 of the 8 words that a block has room for.
     assign low_page = in_range & !(|word_address[10:9]);
 
@@ -269,7 +326,7 @@ module s6_two_channel_register_bank (
 
     always @* begin
         head = ring_byte_out;
-        if (passes & write_now) begin
+        if (passes & is_write) begin
             head = {1'b0, written};
         end
     end
@@ -440,8 +497,8 @@ module s6_two_channel_register_bank (
             passes <= 1'b0;
             byte_passes <= 1'b0;
             ended <= 1'b0;
-            done_now <= 1'b0;
-            write_now <= 1'b0;
+            done_strobe <= 1'b0;
+            is_write <= 1'b0;
             config_page <= 1'b0;
             skipped_words <= 6'd63;
             skipped_channels <= 8'd255;
@@ -469,8 +526,8 @@ module s6_two_channel_register_bank (
             passes <= at_word;
             byte_passes <= at_word & (byte_at[1:0] == lane);
             ended <= turning & at_end;
-            done_now <= ended;
-            write_now <= write_now_next;
+            done_strobe <= ended;
+            is_write <= is_write_next;
             config_page <= config_page_next;
             skipped_words <= skipped_words_next;
             skipped_channels <= skipped_channels_next;
@@ -518,7 +575,7 @@ module s6_two_channel_register_bank (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // read_is_one_moment: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
+    // read_is_one_snapshot: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
     // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins, whatever other channels owe.
     reg [1:0] f_came; initial f_came = 2'd0;
     always @(posedge clock) begin
@@ -532,7 +589,7 @@ module s6_two_channel_register_bank (
     end
     reg f_reading; initial f_reading = 1'b0;
     always @(posedge clock) f_reading <= reading & !reset;
-    always @* `FORMAL_LABEL(read_is_one_moment) assert (!f_reading | (!load & !show));
+    always @* `FORMAL_LABEL(read_is_one_snapshot) assert (!f_reading | (!load & !show));
 `endif
 `undef FORMAL_LABEL
 `endif

@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// One channel's part of a sample set: which trigger it took, and its result at the moment when the set is closed.
+// One channel's part of a sample set: which trigger it took, and its result when the set is closed.
 //
 // trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
 //                     ^   |                 ^
@@ -46,29 +46,42 @@ module s6_two_channel_set_channel_number_2 (
     // The result of the trigger has been replaced by another one (continuous clock).
     output wire         replaced
 );
+    // Number of this channel's block in a set.
     localparam   [3:0] NUMBER = 4'd2;
 
+    // High if the channel took the trigger of the set and has its result.
     wire         is_own;
+    // High for one cycle when the channel's entry in the set is cleared: it has no result for it.
+    wire         empties;
+    // High if the block that is asked for is not this channel's.
+    wire         is_other;
+    // High while the result of the trigger is missing.
     wire         open;
+    // Cause, flags, valid and fresh of this cycle's result.
     wire  [15:0] status;
+    // Byte that goes out: the stored one, or the cause of an upset in its place.
     wire   [7:0] shown;
+    // High if the channel took the last trigger.
     reg          took; initial took = 1'b0;
     reg          took_next;
+    // High from a trigger that the channel took until its result.
     reg          waiting; initial waiting = 1'b0;
     reg          waiting_next;
+    // Position in the set that is being written; 0 if the channel has none for it.
     reg   [47:0] position_taken; initial position_taken = 48'd0;
     reg   [47:0] position_taken_next;
-    wire         position_taken_reset;
+    // Cause, flags, valid and fresh in the set that is being written.
     reg   [15:0] status_taken; initial status_taken = 16'd0;
     reg   [15:0] status_taken_next;
-    wire         status_taken_reset;
+    // High if the channel took the trigger of that set.
     reg          took_taken; initial took_taken = 1'b0;
     reg          took_taken_next;
+    // High if the result was missing when that set was closed.
     reg          missing_taken; initial missing_taken = 1'b0;
     reg          missing_taken_next;
-    reg    [7:0] byte_now; initial byte_now = 8'd0;
-    reg    [7:0] byte_now_next;
-    wire         byte_now_reset;
+    // Byte of position or status that is asked for; 0 while another block is.
+    reg    [7:0] set_byte_held; initial set_byte_held = 8'd0;
+    reg    [7:0] set_byte_held_next;
     wire         _unused_ok = &{1'b0, flags[11:0], flags[19]};
 
     always @* begin
@@ -84,41 +97,40 @@ module s6_two_channel_set_channel_number_2 (
     end
 
     always @* begin
-        byte_now_next = byte_now;
+        set_byte_held_next = set_byte_held;
         case (byte_at)
             3'd0: begin
-                byte_now_next = position_taken[7:0];
+                set_byte_held_next = position_taken[7:0];
             end
             3'd1: begin
-                byte_now_next = position_taken[15:8];
+                set_byte_held_next = position_taken[15:8];
             end
             3'd2: begin
-                byte_now_next = position_taken[23:16];
+                set_byte_held_next = position_taken[23:16];
             end
             3'd3: begin
-                byte_now_next = position_taken[31:24];
+                set_byte_held_next = position_taken[31:24];
             end
             3'd4: begin
-                byte_now_next = position_taken[39:32];
+                set_byte_held_next = position_taken[39:32];
             end
             3'd5: begin
-                byte_now_next = position_taken[47:40];
+                set_byte_held_next = position_taken[47:40];
             end
             3'd6: begin
-                byte_now_next = status_taken[7:0] | {2'd0, took_taken, 5'd0};
+                set_byte_held_next = status_taken[7:0] | {2'd0, took_taken, 5'd0};
             end
             default: begin
-                byte_now_next = status_taken[15:8] | {missing_taken, 7'd0};
+                set_byte_held_next = status_taken[15:8] | {missing_taken, 7'd0};
             end
         endcase
     end
     assign open = waiting & !result_strobe;
     assign owes = open;
     assign replaced = took & !waiting & result_strobe;
-    // No other result of another trigger gets in: what the channel does not have is 0.
+    // Clear the entry if this trigger has no result, so that an older result is never reported as new.
     assign is_own = took & !open;
-    assign position_taken_reset = take & !is_own;
-    assign status_taken_reset = take & !is_own;
+    assign empties = take & !is_own;
     assign status = {1'b0, flags[18:12], fresh, position_valid, 1'b0, cause};
 
     always @* begin
@@ -133,9 +145,9 @@ module s6_two_channel_set_channel_number_2 (
             missing_taken_next = open;
         end
     end
-    // A reset by deselection alone takes no logic.
-    assign byte_now_reset = block != NUMBER;
-    assign shown = byte_now;
+    // Reported with the first status byte; the bytes before it have been sent.
+    assign is_other = block != NUMBER;
+    assign shown = set_byte_held;
     assign set_byte = shown;
 
     always @(posedge clock) begin
@@ -153,26 +165,20 @@ module s6_two_channel_set_channel_number_2 (
     end
 
     always @(posedge clock) begin
-        if (position_taken_reset) begin
+        if (empties) begin
             position_taken <= 48'd0;
-        end else begin
-            position_taken <= position_taken_next;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (status_taken_reset) begin
             status_taken <= 16'd0;
         end else begin
+            position_taken <= position_taken_next;
             status_taken <= status_taken_next;
         end
     end
 
     always @(posedge clock) begin
-        if (byte_now_reset) begin
-            byte_now <= 8'd0;
+        if (is_other) begin
+            set_byte_held <= 8'd0;
         end else begin
-            byte_now <= byte_now_next;
+            set_byte_held <= set_byte_held_next;
         end
     end
 endmodule

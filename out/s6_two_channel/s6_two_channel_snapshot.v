@@ -7,8 +7,8 @@
 // Snapshot: one result per trigger, changed in one clock cycle, with the last good position held.
 //
 // publish    __/\__________________    position, time stamp and what checks them change places with those before
-// confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
-// withdraw   ____________/\________    or: it has not; what was before comes back
+// confirm    ____________/\________    the frame has ended as it should: the result before is discarded
+// withdraw   ____________/\________    or it has not: the result before comes back
 //
 // Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 module s6_two_channel_snapshot (
@@ -77,45 +77,68 @@ module s6_two_channel_snapshot (
     // Strobe: what gave the position takes the one that is held in its place.
     output wire         swap
 );
+    // High for one cycle when a good position is published.
     wire         take_good;
+    // High for one cycle when the published position is withdrawn.
     wire         take_back;
+    // Age that is shown: 0 while the position is not confirmed and can come back.
     reg   [15:0] age_now;
+    // High for one cycle when a new result can be read.
     reg          strobe; initial strobe = 1'b0;
+    // Published position.
     reg   [47:0] held; initial held = 48'd0;
     reg   [47:0] held_next;
+    // CRC that came with the published position.
     reg    [4:0] held_crc; initial held_crc = 5'd0;
     reg    [4:0] held_crc_next;
+    // Width of the published position.
     reg    [5:0] held_width; initial held_width = 6'd0;
     reg    [5:0] held_width_next;
+    // High if the published position came with F2.
     reg          held_f2; initial held_f2 = 1'b0;
     reg          held_f2_next;
+    // Width of the position before.
     reg    [5:0] earlier_width; initial earlier_width = 6'd0;
     reg    [5:0] earlier_width_next;
+    // High if the position before came with F2.
     reg          earlier_f2; initial earlier_f2 = 1'b0;
     reg          earlier_f2_next;
+    // High if there was a valid position before.
     reg          earlier_valid; initial earlier_valid = 1'b0;
     reg          earlier_valid_next;
+    // High from a good result until its frame is confirmed or withdrawn.
     reg          unconfirmed; initial unconfirmed = 1'b0;
     reg          unconfirmed_next;
+    // High while a position is published that can be used.
     reg          valid; initial valid = 1'b0;
     reg          valid_next;
+    // High if the last result brought a good position.
     reg          is_fresh; initial is_fresh = 1'b0;
     reg          is_fresh_next;
+    // Number of results, wrapping.
     reg   [15:0] count; initial count = 16'd0;
     reg   [15:0] count_next;
-    reg   [31:0] moment; initial moment = 32'd0;
-    reg   [31:0] moment_next;
+    // Time stamp of the frame under way; from a result to the end of its frame that of the position before.
+    reg   [31:0] stamp_pending; initial stamp_pending = 32'd0;
+    reg   [31:0] stamp_pending_next;
+    // Time stamp of the published position.
     reg   [31:0] stamp; initial stamp = 32'd0;
     reg   [31:0] stamp_next;
+    // Age of the position in microseconds, up to 65535.
     reg   [15:0] age; initial age = 16'd0;
     reg   [15:0] age_next;
+    // High when the age has reached 65535.
     reg          age_full; initial age_full = 1'b0;
+    // Primary cause of the last result, or of a fault after it.
     reg    [4:0] cause_held; initial cause_held = 5'd0;
     reg    [4:0] cause_held_next;
+    // Raw flags of the last result, or of a fault after it.
     reg   [19:0] flags_held; initial flags_held = 20'd0;
     reg   [19:0] flags_held_next;
+    // CRC received with the last result.
     reg    [4:0] received; initial received = 5'd0;
     reg    [4:0] received_next;
+    // CRC computed for the last result.
     reg    [4:0] computed; initial computed = 5'd0;
     reg    [4:0] computed_next;
 
@@ -143,13 +166,13 @@ module s6_two_channel_snapshot (
     end
 
     always @* begin
-        moment_next = moment;
-        // Between a result and the end of its frame moment keeps the time stamp of the position before.
+        stamp_pending_next = stamp_pending;
+        // Between a result and the end of its frame stamp_pending keeps the time stamp of the position before.
         if (take_good) begin
-            moment_next = stamp;
+            stamp_pending_next = stamp;
         end
         if (first_fall) begin
-            moment_next = timestamp;
+            stamp_pending_next = timestamp;
         end
     end
 
@@ -187,7 +210,7 @@ module s6_two_channel_snapshot (
             held_crc_next = crc_received_in;
             held_width_next = width_in;
             held_f2_next = has_f2_in;
-            stamp_next = moment;
+            stamp_next = stamp_pending;
             valid_next = 1'b1;
             earlier_width_next = held_width;
             earlier_f2_next = held_f2;
@@ -198,7 +221,7 @@ module s6_two_channel_snapshot (
             held_crc_next = crc_received_in;
             held_width_next = earlier_width;
             held_f2_next = earlier_f2;
-            stamp_next = moment;
+            stamp_next = stamp_pending;
             valid_next = earlier_valid;
             is_fresh_next = 1'b0;
         end
@@ -237,7 +260,7 @@ module s6_two_channel_snapshot (
             valid <= 1'b0;
             is_fresh <= 1'b0;
             count <= 16'd0;
-            moment <= 32'd0;
+            stamp_pending <= 32'd0;
             stamp <= 32'd0;
             age <= 16'd0;
             age_full <= 1'b0;
@@ -258,7 +281,7 @@ module s6_two_channel_snapshot (
             valid <= valid_next;
             is_fresh <= is_fresh_next;
             count <= count_next;
-            moment <= moment_next;
+            stamp_pending <= stamp_pending_next;
             stamp <= stamp_next;
             age <= age_next;
             // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look young.
@@ -311,7 +334,7 @@ module s6_two_channel_snapshot (
         if (first_fall | latched) f_newer <= 1'b1;
         if (reset) f_newer <= 1'b0;
     end
-    always @* `FORMAL_LABEL(restored_same) assert (!f_past_valid | !unconfirmed | f_newer | ({earlier_width, earlier_f2, moment, earlier_valid} == {f_last[38:0], f_last_valid}));
+    always @* `FORMAL_LABEL(restored_same) assert (!f_past_valid | !unconfirmed | f_newer | ({earlier_width, earlier_f2, stamp_pending, earlier_valid} == {f_last[38:0], f_last_valid}));
     // the receiver has the position meanwhile: word_kept
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin
         if ($past(take_back & !take_good & !f_newer)) `FORMAL_LABEL(restored) assert (!is_fresh & (f_set == $past({position_in, crc_received_in, f_last[38:0]})) & (valid == $past(f_last_valid & !upset_now)));

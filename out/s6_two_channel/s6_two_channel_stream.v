@@ -12,7 +12,7 @@
 //                                                                                                            |
 // host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
 //
-// What a set and a frame look like is told in docs/stream.md. A set that is closed is taken whole in one cycle, then written in its own
+// docs/stream.md has the format of a set and of a frame. A set that is closed is taken whole in one cycle, then written in its own
 // time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 module s6_two_channel_stream (
     // System clock.
@@ -62,62 +62,93 @@ module s6_two_channel_stream (
     // Strobe, with push_valid only: the byte is taken.
     input  wire         push_take
 );
+    // First byte of a set of a trigger: its type and the number of channels.
     localparam   [7:0] HEAD = 8'd18;
 
+    // High when the open set is complete, or ended by the next trigger.
     wire         wanted;
+    // High if the open set can be written: it fits into the buffer, and no result was replaced.
     wire         good;
+    // High for one cycle when a set is closed and taken for writing.
     wire         take_now;
+    // High for one cycle when a set is lost.
     wire         lost_now;
+    // High for one cycle when the host reads a byte of the stream's words.
     wire         reads;
+    // High for one cycle when the host writes one of the stream's words.
     wire         writes;
+    // High if the host can take the next byte from the data word.
     wire         bus_may;
+    // High for one cycle when the host takes a byte from the data word.
     wire         bus_take;
+    // High if the next byte is discarded: after a clear, or the rest of a frame that was partly read.
     wire         skip;
+    // High for one cycle when a byte leaves the buffer.
     wire         take;
+    // High if the next byte is not the end of a frame.
     wire         more;
+    // High for one cycle when the host clears the stream.
     wire         clear;
     wire         buffer_idle;
     wire         buffer_room;
     wire   [7:0] buffer_set_byte;
     wire  [15:0] buffer_waiting_bytes;
     wire         buffer_ready;
+    // High while sets are collected; written by the host.
     reg          collect; initial collect = 1'b0;
     reg          collect_next;
+    // High while frames are pushed through the front; written by the host.
     reg          push_on; initial push_on = 1'b0;
     reg          push_on_next;
+    // High from a trigger until its set is closed or counted as lost.
     reg          open; initial open = 1'b0;
     reg          open_next;
+    // High in the first cycle after a trigger: the trigger count is not up to date before.
     reg          first; initial first = 1'b0;
+    // High if a result of the open set has been replaced by another; cleared by a trigger.
     reg          spoilt; initial spoilt = 1'b0;
     reg          spoilt_next;
+    // Number of the trigger of the open set.
     reg   [15:0] sequence_value; initial sequence_value = 16'd0;
     reg   [15:0] sequence_next;
-    reg   [31:0] moment; initial moment = 32'd0;
-    reg   [31:0] moment_next;
+    // Time of the trigger of the open set.
+    reg   [31:0] trigger_time; initial trigger_time = 32'd0;
+    reg   [31:0] trigger_time_next;
+    // Number in the head of the set that is being written.
     reg   [15:0] sequence_taken; initial sequence_taken = 16'd0;
     reg   [15:0] sequence_taken_next;
-    reg   [31:0] moment_taken; initial moment_taken = 32'd0;
-    reg   [31:0] moment_taken_next;
+    // Time in the head of the set that is being written.
+    reg   [31:0] time_taken; initial time_taken = 32'd0;
+    reg   [31:0] time_taken_next;
+    // Count of lost sets in the head of the set that is being written.
     reg    [7:0] lost_taken; initial lost_taken = 8'd0;
     reg    [7:0] lost_taken_next;
+    // Sets lost since the last one that was written, up to 255.
     reg    [7:0] lost_before; initial lost_before = 8'd0;
     reg    [7:0] lost_before_next;
     wire         lost_before_reset;
+    // Sets lost since the host cleared the count, up to 65535.
     reg   [15:0] lost_all; initial lost_all = 16'd0;
     reg   [15:0] lost_all_next;
     wire         lost_all_reset;
+    // Byte of the head that is asked for; 0 while another block is.
     reg    [7:0] head_byte; initial head_byte = 8'd0;
     reg    [7:0] head_byte_next;
     wire         head_byte_reset;
+    // Low three bytes of the state word, as of the read of its first byte.
     reg   [23:0] state_held; initial state_held = 24'd0;
     reg   [23:0] state_held_next;
+    // Byte that the host reads; 0 if the word is not one of the stream's.
     reg    [7:0] byte_read; initial byte_read = 8'd0;
     reg    [7:0] byte_read_next;
     wire         byte_read_reset;
+    // High from a clear by the host until the buffer is empty: its bytes are discarded.
     reg          flush; initial flush = 1'b0;
     reg          flush_next;
+    // High if the last byte that was taken was not the end of a frame.
     reg          mid_frame; initial mid_frame = 1'b0;
     reg          mid_frame_next;
+    // High from the first pushed byte of a frame to its last one.
     reg          pushing; initial pushing = 1'b0;
     reg          pushing_next;
     wire         _unused_ok = &{1'b0, trigger_count[31:16]};
@@ -138,9 +169,9 @@ module s6_two_channel_stream (
     );
 
     always @* begin
-        moment_next = moment;
+        trigger_time_next = trigger_time;
         if (trigger) begin
-            moment_next = timestamp;
+            trigger_time_next = timestamp;
         end
     end
 
@@ -174,16 +205,16 @@ module s6_two_channel_stream (
                 head_byte_next = sequence_taken[15:8];
             end
             3'd4: begin
-                head_byte_next = moment_taken[7:0];
+                head_byte_next = time_taken[7:0];
             end
             3'd5: begin
-                head_byte_next = moment_taken[15:8];
+                head_byte_next = time_taken[15:8];
             end
             3'd6: begin
-                head_byte_next = moment_taken[23:16];
+                head_byte_next = time_taken[23:16];
             end
             default: begin
-                head_byte_next = moment_taken[31:24];
+                head_byte_next = time_taken[31:24];
             end
         endcase
     end
@@ -193,11 +224,11 @@ module s6_two_channel_stream (
 
     always @* begin
         sequence_taken_next = sequence_taken;
-        moment_taken_next = moment_taken;
+        time_taken_next = time_taken;
         lost_taken_next = lost_taken;
         if (take_now) begin
             sequence_taken_next = sequence_value;
-            moment_taken_next = moment;
+            time_taken_next = trigger_time;
             lost_taken_next = lost_before;
         end
     end
@@ -234,7 +265,7 @@ module s6_two_channel_stream (
 
     always @* begin
         state_held_next = state_held;
-        // The state is that of the moment when its first byte was read.
+        // The read of the first byte latches the other three.
         if (reads & !(|lane)) begin
             state_held_next = {lost_all[7:0], buffer_waiting_bytes};
         end
@@ -337,9 +368,9 @@ module s6_two_channel_stream (
             open <= 1'b0;
             first <= 1'b0;
             sequence_value <= 16'd0;
-            moment <= 32'd0;
+            trigger_time <= 32'd0;
             sequence_taken <= 16'd0;
-            moment_taken <= 32'd0;
+            time_taken <= 32'd0;
             lost_taken <= 8'd0;
             state_held <= 24'd0;
             flush <= 1'b0;
@@ -352,9 +383,9 @@ module s6_two_channel_stream (
             // The set under way. The number of its trigger is there a cycle after the trigger.
             first <= trigger;
             sequence_value <= sequence_next;
-            moment <= moment_next;
+            trigger_time <= trigger_time_next;
             sequence_taken <= sequence_taken_next;
-            moment_taken <= moment_taken_next;
+            time_taken <= time_taken_next;
             lost_taken <= lost_taken_next;
             state_held <= state_held_next;
             flush <= flush_next;
@@ -411,7 +442,7 @@ module s6_two_channel_stream (
 `endif
 `ifndef FORMAL_ANY_STATE
     // one_set_per_trigger: A trigger while sets are collected has exactly one set, or is counted as lost; nothing else makes a set.
-    // set_of_one_moment: Number, time and count of lost ones in the head of a set do not change while its frame is being written.
+    // set_head_constant: Number, time and count of lost ones in the head of a set do not change while its frame is being written.
     // lost_counted: Each set that is lost is counted, up to 65535, until the host clears the count; those before a set up to 255.
     reg f_owed; initial f_owed = 1'b0;
     reg f_same; initial f_same = 1'b0;
@@ -428,10 +459,10 @@ module s6_two_channel_stream (
         `FORMAL_LABEL(one_set_per_trigger_open) assert (f_owed == open);
     end
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-        if ($past(!buffer_idle)) `FORMAL_LABEL(set_of_one_moment) assert ($stable({sequence_taken, moment_taken, lost_taken}));
+        if ($past(!buffer_idle)) `FORMAL_LABEL(set_head_constant) assert ($stable({sequence_taken, time_taken, lost_taken}));
         if ($past(lost_now & !clear & !(&lost_all))) `FORMAL_LABEL(lost_counted) assert (lost_all == $past(lost_all) + 16'd1);
         if ($past(!lost_before_reset)) `FORMAL_LABEL(lost_counted_before) assert ((lost_before >= $past(lost_before)) & (!$past(lost_now & (lost_before != 8'hff)) | (lost_before == $past(lost_before) + 8'd1)));
-        if (f_same & $past(!buffer_idle)) `FORMAL_LABEL(set_of_one_moment_bytes) assert ($stable(head_byte));
+        if (f_same & $past(!buffer_idle)) `FORMAL_LABEL(set_head_constant_bytes) assert ($stable(head_byte));
     end
 `endif
 `undef FORMAL_LABEL

@@ -19,12 +19,17 @@ module s6_two_channel_timebase (
     // System clock cycles since reset, wrapping.
     output wire  [31:0] timestamp
 );
+    // System clock cycles in a microsecond, minus one.
     localparam   [7:0] LAST_COUNT = 8'd99;
 
+    // High in the last cycle of a microsecond.
     wire         hit;
+    // System clock cycles of the current microsecond, from 0.
     reg    [7:0] count; initial count = 8'd0;
     reg    [7:0] count_next;
+    // High for one cycle each microsecond.
     reg          tick; initial tick = 1'b0;
+    // System clock cycles since reset, wrapping.
     reg   [31:0] cycles; initial cycles = 32'd0;
 
     assign hit = count == LAST_COUNT;

@@ -31,23 +31,35 @@ module s6_two_channel_trigger (
     // Triggers since reset, wrapping.
     output wire  [31:0] trigger_count
 );
+    // Start value of the timer.
     localparam  [23:0] TIMER_FIRST = 24'd2;
 
+    // High for one cycle at the end of each timer period.
     wire         timer_hit;
+    // High for one cycle at a rising edge of the trigger pin.
     wire         pin_hit;
+    // Enabled sources that trigger in the next cycle, one bit each.
     wire   [2:0] hit;
+    // Trigger pin, first synchroniser stage; starts HIGH, so that a pin HIGH at power-up is not an edge.
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync0; initial sync0 = 1'b1;
+    // Trigger pin, second synchroniser stage.
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync1; initial sync1 = 1'b1;
+    // Trigger pin one cycle before sync1, to find the edge.
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync2; initial sync2 = 1'b1;
+    // Counts the timer period; held at its start while the timer source is disabled.
     reg   [23:0] timer; initial timer = 24'd2;
     reg   [23:0] timer_next;
+    // High if the low half of the timer was equal to that of the period one cycle ago.
     reg          timer_hit_low; initial timer_hit_low = 1'b0;
     reg          timer_hit_low_next;
+    // High if the high half of the timer was equal to that of the period one cycle ago.
     reg          timer_hit_high; initial timer_hit_high = 1'b0;
+    // High for one cycle at each trigger.
     reg          strobe; initial strobe = 1'b0;
+    // Triggers since reset, wrapping.
     reg   [31:0] count; initial count = 32'd0;
     reg   [31:0] count_next;
 

@@ -10,8 +10,8 @@
 // read    02 len  a3 a2 a1 a0                                        04: all words from one address
 // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
 //
-// Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-// after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+// Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
+// after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
 //
 // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
 //
@@ -65,6 +65,7 @@ module s6_two_channel_uart_bridge (
     // Strobe, with push_valid only: the byte is taken.
     output wire         push_take
 );
+    // Longest pause within a command, in microseconds.
     localparam  [16:0] TIMEOUT_US = 17'd100000;
     // UART bridge: register accesses from a host, in the UARTBone byte format.
     //
@@ -72,8 +73,8 @@ module s6_two_channel_uart_bridge (
     // read    02 len  a3 a2 a1 a0                                        04: all words from one address
     // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
     //
-    // Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-    // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+    // Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
+    // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
     //
     // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
     //
@@ -92,12 +93,19 @@ module s6_two_channel_uart_bridge (
     localparam   [2:0] BRIDGE_STATE_READ = 3'd4; // Data to the host; bytes from it are dropped.
     localparam   [2:0] BRIDGE_STATE_DISCARD = 3'd5; // Nothing, until the time-out.
 
+    // High if the next byte on the line is one of the stream, not of an answer.
     wire         from_stream;
+    // High for one cycle when a byte of an answer is handed to the transmitter.
     wire         answer_sent;
+    // High at the last byte of an address or word.
     wire         last_lane;
+    // High for one cycle when a byte of an address or word has come or gone.
     reg          next_lane;
+    // Address of the following word, with carry.
     wire  [11:0] next_address;
+    // High if the received byte is not 0.
     wire         high_bits;
+    // High for one cycle when next_byte moves into data.
     wire         data_moves;
     wire   [7:0] receiver_data;
     wire         receiver_strobe;
@@ -105,48 +113,72 @@ module s6_two_channel_uart_bridge (
     reg    [7:0] transmitter_data;
     reg          transmitter_valid;
     wire         transmitter_accept;
+    // Meaning of the next byte.
     reg    [2:0] state; initial state = BRIDGE_STATE_COMMAND;
     reg    [2:0] state_next;
+    // High if all words of the command have one address.
     reg          fixed; initial fixed = 1'b0;
     reg          fixed_next;
+    // High if the command writes.
     reg          writing; initial writing = 1'b0;
     reg          writing_next;
+    // Words of the command that are left, with the one under way.
     reg    [7:0] words_left; initial words_left = 8'd0;
     reg    [7:0] words_left_next;
+    // Word address; moves on after each word unless fixed.
     reg   [10:0] address; initial address = 11'd0;
     reg   [10:0] address_next;
+    // High if the address is beyond the map: reads give 0, writes do nothing.
     reg          out_of_range; initial out_of_range = 1'b0;
     reg          out_of_range_next;
+    // Byte of the field under way: 0 = most significant.
     reg    [1:0] byte_lane; initial byte_lane = 2'd0;
     reg    [1:0] byte_lane_next;
+    // Word to write; moves up by a byte as bytes come in or are taken.
     reg   [31:0] data; initial data = 32'd0;
     reg   [31:0] data_next;
+    // Last byte received for a write, until it moves into data.
     reg    [7:0] next_byte; initial next_byte = 8'd0;
     reg    [7:0] next_byte_next;
+    // High while next_byte waits.
     reg          has_byte; initial has_byte = 1'b0;
     reg          has_byte_next;
+    // High from the start of a write until it has been carried out.
     reg          write_busy; initial write_busy = 1'b0;
     reg          write_busy_next;
+    // High in the cycle after a byte of an answer was handed to the transmitter.
     reg          sent; initial sent = 1'b0;
+    // High in the cycle after the last byte of a word.
     reg          word_end; initial word_end = 1'b0;
     reg          word_end_next;
+    // High if one word is left.
     reg          last_word; initial last_word = 1'b0;
+    // High if no word is left.
     reg          no_word; initial no_word = 1'b0;
+    // High for one cycle when the address moves on.
     reg          step_address; initial step_address = 1'b0;
     reg          step_address_next;
-    reg          access_next; initial access_next = 1'b0;
-    reg          access_next_next;
-    reg          access_now; initial access_now = 1'b0;
+    // High for one cycle before access_strobe.
+    reg          access_due; initial access_due = 1'b0;
+    reg          access_due_next;
+    // High for one cycle when an access to the register bank begins.
+    reg          access_strobe; initial access_strobe = 1'b0;
+    // High while a byte that was read waits for the transmitter.
     reg          byte_ready; initial byte_ready = 1'b0;
     reg          byte_ready_next;
+    // Microseconds since the last byte of the command.
     reg   [16:0] idle_us; initial idle_us = 17'd0;
     reg   [16:0] idle_us_next;
+    // High for one cycle when the time-out has ended the command.
     reg          expired; initial expired = 1'b0;
     reg          expired_next;
+    // High if the time-out starts again: a byte came or went, or no command is under way.
     reg          stop_timer; initial stop_timer = 1'b0;
     reg          stop_timer_next;
+    // High if the next answer begins with the mark 0xFF: pushing is on, or was since the last answer.
     reg          marked; initial marked = 1'b0;
     reg          marked_next;
+    // High until the mark of the answer under way has been handed to the transmitter.
     reg          marker; initial marker = 1'b0;
     reg          marker_next;
 
@@ -170,7 +202,7 @@ module s6_two_channel_uart_bridge (
     always @* begin
         write_busy_next = write_busy;
         // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
-        if (access_now & writing) begin
+        if (access_strobe & writing) begin
             write_busy_next = 1'b1;
         end
         if (done) begin
@@ -241,7 +273,7 @@ module s6_two_channel_uart_bridge (
         end
         word_end_next = 1'b0;
         step_address_next = 1'b0;
-        access_next_next = 1'b0;
+        access_due_next = 1'b0;
         next_lane = 1'b0;
         stop_timer_next = receiver_strobe;
         // The order of a command.
@@ -284,7 +316,7 @@ module s6_two_channel_uart_bridge (
                     next_lane = 1'b1;
                     if (last_lane) begin
                         state_next = BRIDGE_STATE_READ;
-                        access_next_next = !writing & !no_word;
+                        access_due_next = !writing & !no_word;
                         marker_next = marked;
                         if (writing) begin
                             state_next = BRIDGE_STATE_WRITE;
@@ -299,19 +331,19 @@ module s6_two_channel_uart_bridge (
                 if (receiver_strobe) begin
                     next_lane = 1'b1;
                     word_end_next = last_lane;
-                    access_next_next = last_lane;
+                    access_due_next = last_lane;
                 end
             end
             BRIDGE_STATE_READ: begin
-                // An answer that stands still would stand for ever: a byte of it that is lost in here never comes again.
+                // Without the time-out an answer would wait for ever for a byte that an upset has lost.
                 stop_timer_next = transmitter_accept;
                 if (sent) begin
                     next_lane = 1'b1;
                     word_end_next = last_lane;
-                    access_next_next = !last_lane;
+                    access_due_next = !last_lane;
                 end
                 if (word_end) begin
-                    access_next_next = !last_word;
+                    access_due_next = !last_word;
                     step_address_next = !fixed;
                 end
             end
@@ -367,7 +399,7 @@ module s6_two_channel_uart_bridge (
             state_next = BRIDGE_STATE_DISCARD;
         end
         if (expired) begin
-            access_next_next = 1'b0;
+            access_due_next = 1'b0;
             state_next = BRIDGE_STATE_COMMAND;
         end
     end
@@ -395,7 +427,7 @@ module s6_two_channel_uart_bridge (
     assign word_address = address;
     assign in_range = !out_of_range;
     assign lane = byte_lane;
-    assign access = access_now;
+    assign access = access_strobe;
     assign write = writing;
     assign write_data = data;
     assign reading = state == BRIDGE_STATE_READ;
@@ -418,8 +450,8 @@ module s6_two_channel_uart_bridge (
             last_word <= 1'b0;
             no_word <= 1'b0;
             step_address <= 1'b0;
-            access_next <= 1'b0;
-            access_now <= 1'b0;
+            access_due <= 1'b0;
+            access_strobe <= 1'b0;
             byte_ready <= 1'b0;
             idle_us <= 17'd0;
             expired <= 1'b0;
@@ -444,8 +476,8 @@ module s6_two_channel_uart_bridge (
             last_word <= words_left == 8'd1;
             no_word <= !(|words_left);
             step_address <= step_address_next;
-            access_next <= access_next_next;
-            access_now <= access_next;
+            access_due <= access_due_next;
+            access_strobe <= access_due;
             byte_ready <= byte_ready_next;
             idle_us <= idle_us_next;
             expired <= expired_next;
@@ -483,7 +515,7 @@ module s6_two_channel_uart_bridge (
         f_asked_1 <= f_asked;
         if (receiver_strobe) case (f_bytes)
             4'd0: begin
-                f_first <= f_code & receiver_data[0] & !write_busy & !has_byte & !access_next & !access & !step_address;
+                f_first <= f_code & receiver_data[0] & !write_busy & !has_byte & !access_due & !access & !step_address;
                 if (f_code) begin
                     f_bytes <= 4'd1;
                     f_is_write <= receiver_data[0];
@@ -526,7 +558,7 @@ module s6_two_channel_uart_bridge (
     wire [31:0] f_mask = (f_come == 4'd0) ? 32'd0 : 32'hFFFFFFFF >> (6'd32 - {f_come, 3'd0});
     always @* begin
         `FORMAL_LABEL(write_is_whole) assert (!(access & write) | f_whole_1);
-        `FORMAL_LABEL(write_is_whole_next) assert (!(access_next & writing) | f_whole);
+        `FORMAL_LABEL(write_is_whole_next) assert (!(access_due & writing) | f_whole);
         `FORMAL_LABEL(write_is_whole_state) assert (
             ((state == BRIDGE_STATE_COMMAND) & (f_bytes == 4'd0)) |
             ((state == BRIDGE_STATE_LENGTH) & (f_bytes == 4'd1)) |
@@ -542,7 +574,7 @@ module s6_two_channel_uart_bridge (
         `FORMAL_LABEL(first_word_as_sent_to_4) assert (!f_first | (f_bytes != 4'd4) | (out_of_range == (|f_address[15:0])));
         `FORMAL_LABEL(first_word_as_sent_to_5) assert (!f_first | (f_bytes != 4'd5) | ((out_of_range == (|f_address[23:3])) & (address[2:0] == f_address[2:0])));
         `FORMAL_LABEL(read_is_whole) assert (!(access & !write) | f_asked_1);
-        `FORMAL_LABEL(read_is_whole_next) assert (!(access_next & !writing) | f_asked);
+        `FORMAL_LABEL(read_is_whole_next) assert (!(access_due & !writing) | f_asked);
         `FORMAL_LABEL(read_is_whole_state) assert (!f_asked | (state == BRIDGE_STATE_READ));
     end
 `endif

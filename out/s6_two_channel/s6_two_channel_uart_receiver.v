@@ -19,30 +19,46 @@ module s6_two_channel_uart_receiver (
     // High for one cycle: a byte ended with a low stop bit and was dropped.
     output wire         framing_error
 );
+    // Count at the middle of the start bit.
     localparam  [14:0] MIDDLE_COUNT = 15'd14;
+    // Count at the next sample: cycles in a bit, minus one.
     localparam  [14:0] LAST_COUNT = 15'd32;
+    // Start value of shift.
     localparam   [9:0] MARKER = 10'h200;
 
+    // Count at which the next sample is due.
     reg   [14:0] limit;
+    // High when that count is reached.
     wire         hit;
+    // shift with the bit that is sampled.
     wire   [9:0] shifted;
+    // Line, first synchroniser stage.
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync0; initial sync0 = 1'b1;
+    // Line, second synchroniser stage.
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync1; initial sync1 = 1'b1;
+    // Line one cycle before sync1, to find the edge of a start bit.
     reg          previous; initial previous = 1'b1;
+    // High from the edge of a start bit to the sample of the stop bit.
     reg          active; initial active = 1'b0;
     reg          active_next;
+    // High until the start bit has been sampled at its middle.
     reg          in_start_bit; initial in_start_bit = 1'b0;
     reg          in_start_bit_next;
+    // System clock cycles since the edge or the last sample.
     reg   [14:0] count; initial count = 15'd0;
     reg   [14:0] count_next;
+    // High for one cycle when the line is sampled.
     reg          sample; initial sample = 1'b0;
     reg          sample_next;
+    // Bits received so far, the last one at the top; a marker bit falls out with the stop bit.
     reg    [9:0] shift; initial shift = 10'h200;
     reg    [9:0] shift_next;
+    // High for one cycle when a whole byte has come.
     reg          good; initial good = 1'b0;
     reg          good_next;
+    // High for one cycle when a byte ended with a LOW stop bit.
     reg          bad; initial bad = 1'b0;
     reg          bad_next;
 
@@ -127,7 +143,7 @@ module s6_two_channel_uart_receiver (
 `endif
 `ifndef FORMAL_ANY_STATE
     // byte_as_sampled: A byte is the eight samples between a LOW start bit and a HIGH stop bit, the first one lowest.
-    // samples_timed: The first sample of a byte is half a bit behind its edge, less the way through the synchroniser; each other one a bit behind the one before, to the cycle.
+    // samples_timed: The first sample of a byte is half a bit after its edge, less the delay of the synchroniser; each other one a bit after the one before, to the cycle.
     reg [9:0] f_samples;
     reg [3:0] f_count; initial f_count = 4'd0;
     reg [14:0] f_since; initial f_since = 15'd0;

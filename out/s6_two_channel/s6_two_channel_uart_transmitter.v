@@ -19,16 +19,24 @@ module s6_two_channel_uart_transmitter (
     // Serial line, idle HIGH, from a register.
     output wire         tx
 );
+    // Cycles in a bit, minus one.
     localparam  [14:0] LAST_COUNT = 15'd32;
+    // Stop bit at its place in shift.
     localparam   [9:0] STOP_BIT = 10'h200;
 
+    // High in the last cycle of a bit.
     wire         hit;
+    // High for one cycle when a byte is loaded.
     wire         take;
+    // System clock cycles in the current bit.
     reg   [14:0] count; initial count = 15'd0;
     reg   [14:0] count_next;
+    // High for one cycle at the end of each bit.
     reg          bit_end; initial bit_end = 1'b0;
+    // Bits still to be sent, the one on the line in bit 0.
     reg    [9:0] shift; initial shift = 10'd1;
     reg    [9:0] shift_next;
+    // High if only the stop bit is left.
     reg          empty; initial empty = 1'b1;
 
     // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.

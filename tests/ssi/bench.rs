@@ -177,7 +177,7 @@ const SPECIAL_MUTATIONS: &[Mutation] = &[
     mutation(
         "CRC not looked at",
         SPECIAL,
-        "is_wrong_next = is_wrong | (|crc_next);",
+        "is_wrong_next = is_wrong | (|crc_shifted);",
         "is_wrong_next = is_wrong;",
     ),
     mutation(

@@ -48,7 +48,7 @@ fn it_passes_on_receivers() {
 const TOP: &str = "";
 const STROBES: &str = "bus_strobes";
 const EXCHANGE: &str = "exchange";
-const MOMENTS: &str = "moments";
+const BANKS: &str = "result_banks";
 const VERDICT: &str = "verdict_bytes";
 
 #[test]
@@ -109,13 +109,13 @@ const MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "data one clock later",
-        MOMENTS,
+        BANKS,
         "assign word = out_data;",
         "reg [15:0] later;\n    always @(posedge clock) later <= out_data;\n    assign word = later;",
     ),
     mutation(
         "data one clock sooner",
-        MOMENTS,
+        BANKS,
         "assign word = out_data;",
         "assign word = out_data_next;",
     ),
@@ -127,7 +127,7 @@ const MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "no moment: the last result is shown",
-        MOMENTS,
+        BANKS,
         "takes = is_first & !was_first;",
         "takes = 1'b1;",
     ),
@@ -163,7 +163,7 @@ const MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "a bad reply replaces the positions",
-        MOMENTS,
+        BANKS,
         "takes_single = good & has_single;",
         "takes_single = has_single;",
     ),

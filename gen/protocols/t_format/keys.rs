@@ -35,11 +35,11 @@ keys! {
     BIT_RATE = Key::number(CHANNEL, "bit_hz", "bit rate of T-format")
         .one_of(rates).of(SPEAKS_IT).usual(Usual::Number(BIT_HZ));
     REQUEST = Key::number(CHANNEL, "request", "what a trigger sends, of a receiver before the processor has written an ID")
-        .note("6 and 13 with receivers only").one_of(requests).of(SPEAKS_IT).usual(Usual::Number(TFormatStart::USUAL.request_id as u64));
+        .note("6 and 13 with receivers only").one_of(requests).of(SPEAKS_IT).usual(Usual::Number(TFormatStart::DEFAULT.request_id as u64));
     REPLY_GAP_US = Key::number(CHANNEL, "reply_gap_us", "longest pause before the reply")
-        .of(SPEAKS_IT).usual(Usual::Number(TFormatStart::USUAL.reply_gap_us));
+        .of(SPEAKS_IT).usual(Usual::Number(TFormatStart::DEFAULT.reply_gap_us));
     FIELD_GAP_US = Key::number(CHANNEL, "field_gap_us", "longest pause between two fields")
-        .of(SPEAKS_IT).usual(Usual::Number(TFormatStart::USUAL.field_gap_us));
+        .of(SPEAKS_IT).usual(Usual::Number(TFormatStart::DEFAULT.field_gap_us));
     FILTER_CYCLES = Key::number(CHANNEL, "filter_cycles", "pulses up to this length are ignored, by a receiver")
-        .note("at 5 Mbit/s 0 or 1").of(RECEIVER_FORM).usual(Usual::Number(TFormatStart::USUAL.filter_cycles));
+        .note("at 5 Mbit/s 0 or 1").of(RECEIVER_FORM).usual(Usual::Number(TFormatStart::DEFAULT.filter_cycles));
 }

@@ -34,7 +34,7 @@
     reg [6:0] f_waits = 0, f_idle = 0;
     wire aw_in = awvalid & awready, w_in = wvalid & wready, ar_in = arvalid & arready;
     wire b_out = bvalid & bready, r_out = rvalid & rready;
-    wire f_words = \u_words.access_now  | (\u_words.settle  != 0) | f_busy | \u_words.end_now ;
+    wire f_words = \u_words.access_strobe  | (\u_words.settle  != 0) | f_busy | \u_words.end_strobe ;
     wire f_config = (ar0[10:7] == 2) & !ar0[2];
     wire f_whole = \u_words.whole ;
     wire w_runs = busy & writing, r_runs = busy & !writing;
@@ -95,7 +95,7 @@
     end
     // What holds between front, word and bank in every state that can be reached: induction needs it.
     always @* begin
-        one_place: assert (\u_words.access_now  + (\u_words.settle  != 0) + f_busy + \u_words.end_now  <= 1);
+        one_place: assert (\u_words.access_strobe  + (\u_words.settle  != 0) + f_busy + \u_words.end_strobe  <= 1);
         busy_is_so: assert (busy == (request | f_words) && !(request && f_words));
         if (f_busy) begin bank_has_it: assert (f_write == write && f_address == word_address); end
         one_write: assert (!(w_runs && has_b));
@@ -109,21 +109,21 @@
         if (w_runs) begin w_running: assert (address == aw0 && s0 == 15); end
         if (w_runs && request) begin w_asked: assert (data == w0); end
         if (r_runs) begin r_running: assert (address == ar0); end
-        f_wrote_so: assert (f_wrote == ((w_runs && (f_busy | \u_words.end_now )) || (has_b && s0 == 15)));
-        if (w_runs && \u_words.access_now ) begin w_word: assert (\u_words.data  == w0 && lane == 0 && f_whole); end
+        f_wrote_so: assert (f_wrote == ((w_runs && (f_busy | \u_words.end_strobe )) || (has_b && s0 == 15)));
+        if (w_runs && \u_words.access_strobe ) begin w_word: assert (\u_words.data  == w0 && lane == 0 && f_whole); end
         if (w_runs && f_words) begin w_whole: assert (f_whole && lane == 0 && \u_words.settle  == 0); end
         if (has_b) begin b_error: assert (error == (s0 != 15 && s0 != 0)); end
         if (w_runs) begin no_error: assert (!error); end
         if (r_runs && f_words) begin r_whole: assert (f_whole == f_config); end
         if (f_read) begin read_is_running: assert ((r_runs && !request && \u_words.settle  == 0) || has_r); end
-        else begin f_lanes_new: assert (f_lanes == 0 && !has_r && !(r_runs && (f_busy | \u_words.end_now ))); end
-        if (r_runs && \u_words.access_now  && !f_read) begin first_lane: assert (lane == 0); end
+        else begin f_lanes_new: assert (f_lanes == 0 && !has_r && !(r_runs && (f_busy | \u_words.end_strobe ))); end
+        if (r_runs && \u_words.access_strobe  && !f_read) begin first_lane: assert (lane == 0); end
         if (r_runs && \u_words.settle  != 0) begin settle_lane: assert (lane == 0); end
-        if (f_read && r_runs && f_whole) begin whole_is_one: assert (lane == 0 && f_lanes == 0 && !\u_words.access_now ); end
+        if (f_read && r_runs && f_whole) begin whole_is_one: assert (lane == 0 && f_lanes == 0 && !\u_words.access_strobe ); end
         if (f_read && r_runs && !f_whole) begin
             if (f_busy) begin lanes_in_bank: assert (lane == f_lanes); end
-            if (\u_words.access_now ) begin lanes_next: assert (lane == f_lanes + 2'd1 && f_lanes != 3); end
-            if (\u_words.end_now ) begin lanes_end: assert (f_lanes == 3 && f_word == \u_words.data ); end
+            if (\u_words.access_strobe ) begin lanes_next: assert (lane == f_lanes + 2'd1 && f_lanes != 3); end
+            if (\u_words.end_strobe ) begin lanes_end: assert (f_lanes == 3 && f_word == \u_words.data ); end
             if (lane == 1) begin word_1: assert (f_word[7:0] == \u_words.data [7:0]); end
             if (lane == 2) begin word_2: assert (f_word[15:0] == \u_words.data [15:0]); end
             if (lane == 3) begin word_3: assert (f_word[23:0] == \u_words.data [23:0]); end

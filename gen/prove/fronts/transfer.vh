@@ -15,7 +15,7 @@
     // Configuration words pass in one access, as written words do; others are read byte by byte.
     wire f_config = (t_address[10:7] == 2) & !t_address[2];
     wire p_config = (p_asked[10:7] == 2) & !p_asked[2];
-    wire f_words = \u_words.access_now  | (\u_words.settle  != 0) | f_busy | \u_words.end_now ;
+    wire f_words = \u_words.access_strobe  | (\u_words.settle  != 0) | f_busy | \u_words.end_strobe ;
     wire f_whole = \u_words.whole ;
     wire f_mine = busy & !t_left;
     always @(posedge clock) begin
@@ -49,14 +49,14 @@
     end
     // What holds between front, word and bank in every state that can be reached: induction needs it.
     always @* begin
-        one_place: assert (\u_words.access_now  + (\u_words.settle  != 0) + f_busy + \u_words.end_now  <= 1);
+        one_place: assert (\u_words.access_strobe  + (\u_words.settle  != 0) + f_busy + \u_words.end_strobe  <= 1);
         busy_is_so: assert (busy == (request | f_words) && !(request && f_words));
         if (f_busy) begin
             bank_has_it: assert (f_write == write && f_address == word_address);
         end
         if (f_mine) begin
             mine_is_asked: assert (word_address == p_asked && write == p_writes && !p_refused && p_held);
-            mine_is_new: assert (f_done || request || \u_words.settle  != 0 || (\u_words.access_now  && lane == 0));
+            mine_is_new: assert (f_done || request || \u_words.settle  != 0 || (\u_words.access_strobe  && lane == 0));
         end
         if (f_done) begin
             done_is_mine: assert ((f_mine || (t_answer && !t_error)) && !request && \u_words.settle  == 0 && p_on);
@@ -70,12 +70,12 @@
             data_is_asked: assert (!(p_writes && !f_done) || write_data == p_word);
         end
         if (f_done && f_mine && f_whole) begin
-            whole_is_one: assert (lane == 0 && f_lanes == 0 && !\u_words.access_now );
+            whole_is_one: assert (lane == 0 && f_lanes == 0 && !\u_words.access_strobe );
         end
         if (f_done && f_mine && !f_whole) begin
             if (f_busy) begin lanes_in_bank: assert (lane == f_lanes); end
-            if (\u_words.access_now ) begin lanes_next: assert (lane == f_lanes + 2'd1 && f_lanes != 3); end
-            if (\u_words.end_now ) begin lanes_end: assert (f_lanes == 3 && f_word == t_read); end
+            if (\u_words.access_strobe ) begin lanes_next: assert (lane == f_lanes + 2'd1 && f_lanes != 3); end
+            if (\u_words.end_strobe ) begin lanes_end: assert (f_lanes == 3 && f_word == t_read); end
             if (lane == 1) begin word_1: assert (f_word[7:0] == t_read[7:0]); end
             if (lane == 2) begin word_2: assert (f_word[15:0] == t_read[15:0]); end
             if (lane == 3) begin word_3: assert (f_word[23:0] == t_read[23:0]); end

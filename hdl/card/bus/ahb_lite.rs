@@ -6,8 +6,8 @@
 //! hrdata, hreadyout, hresp <----------------------------------- finished
 //! ```
 //!
-//! An address phase is taken when `hready` and `hreadyout` are HIGH; its data phase has wait states until the word is there, and the next address phase may stand
-//! beside its last cycle. Words only: another size, or an address that is no multiple of 4, has the two cycles of an error, and nothing is
+//! An address phase is taken when `hready` and `hreadyout` are HIGH; its data phase has wait states until the word is there, and the next address phase may overlap
+//! its last cycle. Words only: another size, or an address that is no multiple of 4, has the two cycles of an error, and nothing is
 //! done. A burst is its single words.
 //!
 //! Ref: ARM IHI 0033A, AMBA 3 AHB-Lite Protocol v1.0.
@@ -16,7 +16,7 @@ use super::word_access::WordAccess;
 use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -53,15 +53,24 @@ pub struct AhbLiteFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// High from the address phase of a transfer until its word access has ended.
     busy: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// High in the first cycle of an error response.
     refused: Reg<Bit>,
+    /// High in the second cycle of an error response.
     refused_still: Reg<Bit>,
+    /// Word address of the transfer.
     address: Reg<Bits<11>>,
+    /// High if the transfer is a write.
     writing: Reg<Bit>,
+    /// High for one cycle when an address phase is taken.
     start: Signal<Local, Bit>,
+    /// High if the transfer is an aligned word.
     is_word: Signal<Local, Bit>,
 }
 
@@ -71,8 +80,8 @@ impl Logic for AhbLiteFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         self.hreadyout.next = !self.busy.q.val() & !self.refused.q.val();

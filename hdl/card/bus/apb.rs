@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A transfer is taken in the cycle after its first one, if it is enabled then: what a master shows in a longer SETUP and changes does not count.
-//! Every transfer has wait states; none is without an end. `pslverr` tells an address that is no multiple of 4. A
+//! Every transfer has wait states; none is without an end. `pslverr` reports an address that is no multiple of 4. A
 //! master that takes `psel` away before `pready` gets no answer, and a write that has begun is carried out.
 //!
 //! Ref: ARM IHI 0024B, AMBA 3 APB Protocol v1.0.
@@ -15,7 +15,7 @@ use super::word_access::WordAccess;
 use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -48,17 +48,28 @@ pub struct ApbFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// High from the start of a transfer until its word access has ended.
     busy: Reg<Bit>,
+    /// High for one cycle when the transfer ends.
     ready: Reg<Bit>,
+    /// High with `ready` if the address was not a multiple of 4.
     error: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// High if the master has left the transfer before its end; cleared by the next transfer.
     abandoned: Reg<Bit>,
+    /// Word address of the transfer.
     address: Reg<Bits<11>>,
+    /// High if the transfer is a write.
     writing: Reg<Bit>,
+    /// High for one cycle when a transfer is taken.
     start: Signal<Local, Bit>,
+    /// High while the master selects this slave and enables the transfer.
     enabled: Signal<Local, Bit>,
+    /// High if the address is not a multiple of 4.
     misaligned: Signal<Local, Bit>,
 }
 
@@ -68,8 +79,8 @@ impl Logic for ApbFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         // Also in the second cycle of a transfer, if one that was abandoned kept it waiting.
@@ -87,12 +98,12 @@ impl Logic for ApbFront {
             self.ready.d.next = self.misaligned.val();
             self.error.d.next = self.misaligned.val();
         }
-        // A master that leaves in the middle gets no answer: the next transfer would take it for its own.
+        // If the master drops the transfer, give no answer: the next transfer would take it as its own.
         self.enabled.next = self.psel.val() & self.penable.val();
         if self.busy.q.val() & !self.enabled.val() {
             self.abandoned.d.next = true;
         }
-        // One that leaves at once, or does not enable it, has asked for nothing: its word cannot be trusted any more.
+        // Cancel the access if the master drops the transfer one cycle after it, or does not enable it: its write data may no longer be valid.
         self.words.request.next = self.request.q.val() & self.enabled.val();
         if self.words.finished.val() | (self.request.q.val() & !self.enabled.val()) {
             self.busy.d.next = false;

@@ -17,7 +17,7 @@ use super::word_access::WordAccess;
 use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -68,26 +68,46 @@ pub struct AxiLiteFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// High while a write address waits for its access.
     has_aw: Reg<Bit>,
+    /// Word address of the waiting write.
     write_address: Reg<Bits<11>>,
+    /// High while a word to write waits for its access.
     has_w: Reg<Bit>,
+    /// Word to write.
     data: Reg<Bits<32>>,
+    /// Byte strobes of the waiting write.
     strobes: Reg<Bits<4>>,
+    /// High while a read address waits for its access.
     has_ar: Reg<Bit>,
+    /// Word address of the waiting read.
     read_address: Reg<Bits<11>>,
+    /// High while a write response waits for the master.
     has_b: Reg<Bit>,
+    /// High if the last write selected a part of a word.
     error: Reg<Bit>,
+    /// High while a word that was read waits for the master.
     has_r: Reg<Bit>,
+    /// Word that was read.
     answer: Reg<Bits<32>>,
+    /// High while a word access runs.
     busy: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// Word address of the access.
     address: Reg<Bits<11>>,
+    /// High if the access, or the last one, is a write.
     writing: Reg<Bit>,
+    /// High if a write has all it needs, and its response has room.
     may_write: Signal<Local, Bit>,
+    /// High if a read has all it needs, and its word has room.
     may_read: Signal<Local, Bit>,
+    /// High for one cycle when a write is taken.
     goes_write: Signal<Local, Bit>,
+    /// High for one cycle when a read is taken.
     goes_read: Signal<Local, Bit>,
 }
 
@@ -97,8 +117,8 @@ impl Logic for AxiLiteFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         // Each channel has a place for one item; it is free again when the access begins.
@@ -122,7 +142,7 @@ impl Logic for AxiLiteFront {
             self.has_r.d.next = false;
         }
 
-        // An answer that nobody takes stops its own direction only. Of two that are ready, the direction that was not the last.
+        // A response that the master does not take stops its own direction only. If both directions are ready, they alternate.
         self.may_write.next = self.has_aw.q.val() & self.has_w.q.val() & !self.has_b.q.val();
         self.may_read.next = self.has_ar.q.val() & !self.has_r.q.val();
         self.goes_write.next = !self.busy.q.val()

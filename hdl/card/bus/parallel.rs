@@ -8,12 +8,12 @@
 //!
 //! | register | read | write |
 //! |---|---|---|
-//! | 0, 1, 2 | position, bits 15..0, 31..16, 47..32; register 0 takes the moment of 0 to 4 | |
+//! | 0, 1, 2 | position, bits 15..0, 31..16, 47..32; reading register 0 latches 0 to 4 | |
 //! | 3, 4 | word `status` of the result, bits 31..16 and 15..0 | |
 //! | 5 | bit 15 busy, 13:11 channel, 10:0 word address | 13:11 channel of 0 to 4, 10:0 word address; begins to read that word unless bit 14 is set |
 //! | 6, 7 | the word, bits 15..0, 31..16 | the same; writing 7 writes the word |
 //!
-//! A register's data stands at the pins 4 clocks after the register has been selected. While bit 15 of register 5 is set, writes
+//! A register's data are at the pins 4 clocks after the register has been selected. While bit 15 of register 5 is set, writes
 //! are ignored. The direct registers follow a result after 130 clocks at most.
 
 use super::strobes::BusStrobes;
@@ -21,7 +21,7 @@ use super::word_access::WordAccess;
 use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -52,37 +52,67 @@ pub struct ParallelFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// Strobes of the bus, in the system clock domain.
     #[start]
     strobes: BusStrobes,
+    /// Data at the pins; held while the same register is read.
     out_data: Reg<Bits<16>>,
+    /// `is_first` of the cycle before.
     was_first: Reg<Bit>,
+    /// Status word of the result that is being read.
     next_status: Reg<Bits<32>>,
+    /// Low position word of the result that is being read.
     next_low: Reg<Bits<32>>,
+    /// Status word of the last complete result.
     live_status: Reg<Bits<32>>,
+    /// Position of the last complete result.
     live_position: Reg<Bits<48>>,
+    /// Status word that registers 3 and 4 show; latched by a read of register 0.
     seen_status: Reg<Bits<32>>,
+    /// Position that registers 0 to 2 show; latched by a read of register 0.
     seen_position: Reg<Bits<48>>,
+    /// Word address of the window, registers 6 and 7.
     window_address: Reg<Bits<11>>,
+    /// Channel of registers 0 to 4.
     channel: Reg<Bits<3>>,
+    /// Low half of the window's word.
     window_low: Reg<Bits<16>>,
+    /// High half of the window's word.
     window_high: Reg<Bits<16>>,
+    /// High from a write of register 5 until the word of the window has been read.
     wants_read: Reg<Bit>,
+    /// High from a write of register 7 until the word of the window has been written.
     wants_write: Reg<Bit>,
+    /// High from a change of the channel until its result has been read.
     settling: Reg<Bit>,
+    /// High while a word access runs.
     busy: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// Word address of the access.
     address: Reg<Bits<11>>,
+    /// High if the access is a write.
     writing: Reg<Bit>,
+    /// High if the access is one of the window.
     is_window: Reg<Bit>,
+    /// Word of the result that is read next, 0 to 2.
     step: Reg<Bits<2>>,
+    /// Channel whose result is being read.
     polled: Reg<Bits<3>>,
+    /// High if a register was being read in the cycle before.
     was_read: Reg<Bit>,
+    /// Register that was selected in the cycle before.
     last_register: Reg<Bits<3>>,
+    /// High if the same register has been read for two cycles.
     is_steady: Reg<Bit>,
+    /// High while a register is read that was read in the cycle before, too.
     is_same: Signal<Local, Bit>,
+    /// High while register 0 is read.
     is_first: Signal<Local, Bit>,
+    /// High while an access of the window or a change of the channel is not finished.
     is_busy: Signal<Local, Bit>,
 }
 
@@ -92,13 +122,13 @@ impl Logic for ParallelFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         connect!(self.strobes <= self; clock, reset, cs_n, rd_n, wr_n, register_at, data_in);
 
-        // Reading register 0 takes the moment that registers 0 to 4 show.
+        // Reading register 0 latches what registers 0 to 4 show.
         self.is_first.next = self.strobes.reading.val() & !self.strobes.register.val().any();
         self.was_first.d.next = self.is_first.val();
         if self.is_first.val() & !self.was_first.q.val() {
@@ -107,8 +137,8 @@ impl Logic for ParallelFront {
         }
         self.is_busy.next =
             self.wants_read.q.val() | self.wants_write.q.val() | self.settling.q.val();
-        // What has been read once stands still until another register is read, or the strobe ends. Register 0 takes its moment in the first
-        // cycle, so the second one still counts.
+        // The data are held until another register is read, or the strobe ends. Register 0 latches in the first cycle, so the second one still
+        // counts.
         self.was_read.d.next = self.strobes.reading.val();
         self.last_register.d.next = self.strobes.register.val();
         self.is_same.next = self.strobes.reading.val()
@@ -170,7 +200,7 @@ impl Logic for ParallelFront {
             }
         }
 
-        // The result of the channel is read over and over: three words, upwards, so of one moment. The window comes between two rounds.
+        // The result of the channel is read again and again: three words at rising addresses, so of one snapshot. The window comes between two rounds.
         self.request.d.next = false;
         if !self.busy.q.val() {
             self.busy.d.next = true;

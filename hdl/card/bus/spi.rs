@@ -8,7 +8,7 @@
 //! Addresses count words and rise; `n` words, 1 to 255. `c1 c0` is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF): in a read over
 //! the four bytes of the request and all words that came, in a write over everything before it, from the second word on over that
 //! word. A word is written when its check sum is right; otherwise nothing more of the frame is. `s` is 0xA0, or 0xA2 if the last write was refused.
-//! All result words of a frame are of one moment. A frame may end anywhere. A read that comes while a word is still being written waits for it;
+//! All result words of a frame are of one snapshot. A frame may end anywhere. A read that comes while a word is still being written waits for it;
 //! if the host's clock does not, the check sum of its answer is wrong.
 
 use super::word_access::WordAccess;
@@ -17,7 +17,7 @@ use crate::card::stream::buffer::CRC16_POLYNOMIAL;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::endat::service::program::ServiceTimes;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
@@ -65,51 +65,94 @@ pub struct SpiFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// Serial clock, first synchroniser stage.
     sck_0: SyncReg<Bit>,
+    /// Serial clock, second synchroniser stage.
     sck_1: SyncReg<Bit>,
+    /// Serial clock one cycle before `sck_1`, to find its edges.
     sck_2: Reg<Bit>,
+    /// Chip select, active high, first synchroniser stage.
     cs_0: SyncReg<Bit>,
+    /// Chip select, second synchroniser stage.
     cs_1: SyncReg<Bit>,
+    /// Data from the host, first synchroniser stage.
     mosi_0: SyncReg<Bit>,
+    /// Data from the host, second synchroniser stage.
     mosi_1: SyncReg<Bit>,
+    /// Meaning of the byte.
     #[start(SpiState::Command)]
     state: Reg<SpiState>,
+    /// Bits of the byte that have been taken.
     bit_count: Reg<Bits<3>>,
+    /// Last eight bits from the host.
     byte_in: Reg<Bits<8>>,
+    /// High for one cycle when a byte is complete.
     byte_end: Reg<Bit>,
+    /// Byte of the word or check sum.
     byte_count: Reg<Bits<2>>,
+    /// CRC of the frame so far; in a write since the last word that was accepted.
     #[start(0xffffu64.into())]
     crc: Reg<Bits<16>>,
+    /// Bits still to be sent, the one on the line at the top.
     shift_out: Reg<Bits<32>>,
+    /// High until the next falling edge loads a word that was read.
     load_word: Reg<Bit>,
+    /// High until the next falling edge loads the check sum.
     load_crc: Reg<Bit>,
+    /// High if a word was not ready in time: the check sum of the frame is sent wrong.
     late: Reg<Bit>,
+    /// High if the frame is a write.
     writing: Reg<Bit>,
+    /// Words of the frame that are left.
     words_left: Reg<Bits<8>>,
+    /// Word address of the next access.
     address: Reg<Bits<11>>,
+    /// High if that address is beyond the map.
     out_of_range: Reg<Bit>,
+    /// Word to write.
     data: Reg<Bits<32>>,
+    /// High while an access waits for the one before.
     asked: Reg<Bit>,
+    /// High while an access runs.
     busy: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// Word address of the access.
     access_address: Reg<Bits<11>>,
+    /// High if the address of the access is beyond the map.
     access_outside: Reg<Bit>,
+    /// High if the access is a write.
     access_writes: Reg<Bit>,
+    /// High if the last word to write was refused: wrong check sum, or an access was still running.
     refused: Reg<Bit>,
+    /// High while the host selects this slave.
     selected: Signal<Local, Bit>,
+    /// High for one cycle at a rising edge of the serial clock.
     rise: Signal<Local, Bit>,
+    /// High for one cycle at a falling edge of the serial clock.
     fall: Signal<Local, Bit>,
+    /// Bit that enters the CRC.
     crc_bit: Signal<Local, Bit>,
+    /// High while bits enter the CRC.
     crc_runs: Signal<Local, Bit>,
+    /// High for one cycle when the address moves on.
     step_address: Signal<Local, Bit>,
+    /// High while an access waits or runs.
     waits: Signal<Local, Bit>,
+    /// Following address, with carry.
     next_address: Signal<Local, Bits<12>>,
+    /// High if one word is left.
     last_word: Signal<Local, Bit>,
+    /// Check sum that is sent: inverted if a word was late.
     crc_sent: Signal<Local, Bits<16>>,
+    /// Generator of the CRC, without x^16.
     polynomial: Constant<Bits<16>>,
+    /// First word of an answer if the last write was accepted.
     accepted_word: Constant<Bits<32>>,
+    /// First word of an answer if the last write was refused.
     refused_word: Constant<Bits<32>>,
 }
 
@@ -127,9 +170,9 @@ impl Default for SpiFront {
 impl Logic for SpiFront {
     fn update(&mut self) {
         connect!(self.words <= self;
-            clock, reset, tick_us, keep_moment = selected
+            clock, reset, tick_us, keep_snapshot = selected
         );
-        self.words.end_moment.next = !self.selected.val();
+        self.words.end_snapshot.next = !self.selected.val();
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         self.sck_0.d.next = self.sck.val();
@@ -247,7 +290,7 @@ impl Logic for SpiFront {
                     if self.byte_count.q.val().get_bit(0) {
                         self.state.d.next = SpiState::Ignore;
                         if self.writing.q.val() {
-                            // A check sum behind what it belongs to leaves 0.
+                            // Data followed by their check sum leave 0.
                             self.refused.d.next = self.crc.q.val().any() | self.waits.val();
                             if !self.crc.q.val().any() & !self.waits.val() {
                                 self.asked.d.next = true;

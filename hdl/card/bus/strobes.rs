@@ -41,18 +41,31 @@ pub struct BusStrobes {
     pub written_data: Signal<Out, Bits<16>>,
     /// Parity of the data at the pins.
     pub written_sum: Signal<Out, Bit>,
+    /// Chip select, active high, first synchroniser stage.
     cs_0: SyncReg<Bit>,
+    /// Chip select, second synchroniser stage.
     cs_1: SyncReg<Bit>,
+    /// Read strobe, active high, first synchroniser stage.
     rd_0: SyncReg<Bit>,
+    /// Read strobe, second synchroniser stage.
     rd_1: SyncReg<Bit>,
+    /// Write strobe, active high, first synchroniser stage.
     wr_0: SyncReg<Bit>,
+    /// Write strobe, second synchroniser stage.
     wr_1: SyncReg<Bit>,
+    /// Register address, first synchroniser stage.
     register_0: SyncReg<Bits<3>>,
+    /// Register address, second synchroniser stage.
     register_1: SyncReg<Bits<3>>,
+    /// Data at the pins at the last clock edge before the write strobe ended.
     data_0: SyncReg<Bits<16>>,
+    /// Parity of those data, formed at the pins.
     sum_0: SyncReg<Bit>,
+    /// `is_writing` of the cycle before.
     was_writing: Reg<Bit>,
+    /// Register that was selected while the write strobe was active.
     last_register: Reg<Bits<3>>,
+    /// High while a write is under way.
     is_writing: Signal<Local, Bit>,
 }
 

@@ -14,7 +14,7 @@ use super::word_access::WordAccess;
 use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -49,17 +49,28 @@ pub struct WishboneFront {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
+    /// Accesses of the register bank.
     #[start]
     words: WordAccess,
+    /// High from the start of a transfer until its word access has ended.
     busy: Reg<Bit>,
+    /// High for one cycle when the transfer has been carried out.
     acknowledge: Reg<Bit>,
+    /// High for one cycle when the transfer is refused.
     error: Reg<Bit>,
+    /// High for one cycle when a word access begins.
     request: Reg<Bit>,
+    /// High if the master has left the transfer before its end; cleared by the next transfer.
     abandoned: Reg<Bit>,
+    /// Word address of the transfer.
     address: Reg<Bits<11>>,
+    /// High if the transfer is a write.
     writing: Reg<Bit>,
+    /// High while the master asks for a transfer.
     asks: Signal<Local, Bit>,
+    /// High for one cycle when a transfer is taken.
     start: Signal<Local, Bit>,
+    /// High if the transfer writes a part of a word.
     refused: Signal<Local, Bit>,
 }
 
@@ -69,8 +80,8 @@ impl Logic for WishboneFront {
         connect!(self.words <= self;
             clock, reset, tick_us
         );
-        self.words.keep_moment.next = false;
-        self.words.end_moment.next = false;
+        self.words.keep_snapshot.next = false;
+        self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         // Also later than the first cycle of a transfer, if one that was abandoned kept it waiting.
@@ -89,11 +100,11 @@ impl Logic for WishboneFront {
             self.busy.d.next = !self.refused.val();
             self.error.d.next = self.refused.val();
         }
-        // A master that leaves in the middle gets no answer: the next transfer would take it for its own.
+        // If the master drops the request, give no answer: the next transfer would take it as its own.
         if self.busy.q.val() & !self.asks.val() {
             self.abandoned.d.next = true;
         }
-        // One that leaves at once has asked for nothing: its word cannot be trusted any more.
+        // Cancel the access if the master drops the request one cycle after it: its write data may no longer be valid.
         self.words.request.next = self.request.q.val() & self.asks.val();
         if self.words.finished.val() | (self.request.q.val() & !self.asks.val()) {
             self.busy.d.next = false;

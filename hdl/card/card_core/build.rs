@@ -1,7 +1,7 @@
 //! A card out of its configuration: how many of each block it has.
 
 use super::*;
-use crate::several::numbered;
+use crate::replicate::numbered;
 
 impl CardCore {
     /// A card.
@@ -65,7 +65,7 @@ impl CardCore {
             run: numbered(n.runs, RunChannel::new),
             run_ready: each(n.runs + 1),
             run_sequence: each(n.runs + 1),
-            run_moment: each(n.runs + 1),
+            run_timestamp: each(n.runs + 1),
             run_head: each(n.runs + 1),
             run_place: each(n.runs + 1),
             run_lost: each(n.runs + 1),

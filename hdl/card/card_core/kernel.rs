@@ -386,7 +386,8 @@ impl Logic for CardCore {
             self.run_ready[i].next = self.run_ready[i + 1].val() | self.run[i].ready.val();
             self.run_sequence[i].next =
                 self.run_sequence[i + 1].val() | self.run[i].ready_sequence.val();
-            self.run_moment[i].next = self.run_moment[i + 1].val() | self.run[i].ready_moment.val();
+            self.run_timestamp[i].next =
+                self.run_timestamp[i + 1].val() | self.run[i].ready_timestamp.val();
             self.run_head[i].next = self.run_head[i + 1].val() | self.run[i].ready_head.val();
             self.run_place[i].next = self.run_place[i + 1].val() | self.run[i].ready_place.val();
             self.run_lost[i].next = self.run_lost[i + 1].val() | self.run[i].lost.val();
@@ -394,13 +395,13 @@ impl Logic for CardCore {
         for i in self._runs..self._run_links {
             self.run_ready[i].next = false;
             self.run_sequence[i].next = 0.into();
-            self.run_moment[i].next = 0.into();
+            self.run_timestamp[i].next = 0.into();
             self.run_head[i].next = 0.into();
             self.run_place[i].next = 0.into();
             self.run_lost[i].next = false;
             self.stream[0].run_ready[0].next = self.run_ready[0].val();
             self.stream[0].run_sequence[0].next = self.run_sequence[0].val();
-            self.stream[0].run_moment[0].next = self.run_moment[0].val();
+            self.stream[0].run_timestamp[0].next = self.run_timestamp[0].val();
             self.stream[0].run_head[0].next = self.run_head[0].val();
             self.stream[0].run_place[0].next = self.run_place[0].val();
             self.stream[0].run_lost[0].next = self.run_lost[0].val();

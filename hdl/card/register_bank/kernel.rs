@@ -23,7 +23,7 @@ impl Logic for RegisterBank {
         self.answer();
     }
 
-    /// What an access is stands from its begin to its end, whatever the front shows.
+    /// Address and direction of an access are kept from its start to its end, whatever the front shows.
     fn hold_access(&mut self) {
         self.busy.next = self.turning.q.val() | self.ended.q.val();
         self.starts.next = self.front.access.val() & !self.busy.val();
@@ -40,7 +40,7 @@ impl Logic for RegisterBank {
     /// They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
     fn turn(&mut self) {
         self.whole_turn.next =
-            self.config_page.q.val() | (self.write_now.q.val() & !self.service_skip.q.val());
+            self.config_page.q.val() | (self.is_write.q.val() & !self.service_skip.q.val());
         self.block_end.next = self.byte_at.q.val() == 11;
         self.at_end.next = self.block_end.val() & (self.block_at.q.val() == self.last_block.val());
         if !self.whole_turn.val() {
@@ -64,14 +64,14 @@ impl Logic for RegisterBank {
         }
         if self.starts.val() {
             self.turning.d.next = true;
-            self.write_now.d.next = self.front.write.val();
+            self.is_write.d.next = self.front.write.val();
         }
         self.turn.d.next = self.turning.q.val() & self.whole_turn.val();
         self.ended.d.next = self.turning.q.val() & self.at_end.val();
-        self.done_now.d.next = self.ended.q.val();
+        self.done_strobe.d.next = self.ended.q.val();
         self.ring_turn.next = self.turn.q.val();
         self.ring_home.next = !self.turn.q.val();
-        self.front.done.next = self.done_now.q.val();
+        self.front.done.next = self.done_strobe.q.val();
     }
 
     /// Configuration: the ring carries 3 of the 8 words that a block has room for.
@@ -95,7 +95,7 @@ impl Logic for RegisterBank {
             self.at_word.val() & (self.byte_at.q.val().get_bits::<2>(0) == self.front.lane.val());
         self.written.next = self.front.write_data.val().get_bits::<8>(24);
         self.head.next = self.ring.byte_out.val();
-        if self.passes.q.val() & self.write_now.q.val() {
+        if self.passes.q.val() & self.is_write.q.val() {
             self.head.next = bit_cast::<9, 8>(self.written.val());
             if self.has_guards.val() {
                 self.head.next = bit_cast::<9, 8>(self.written.val())
@@ -189,8 +189,8 @@ impl Logic for RegisterBank {
         self.sources.next = self.active_sources.q.val();
         self.disabled.next = field!(self.ring.word0.val(), card_config.trigger_sources.disabled);
         // In the cycle in which they are taken over: the first words of card and channels.
-        self.restart.next = self.done_now.q.val()
-            & self.write_now.q.val()
+        self.restart.next = self.done_strobe.q.val()
+            & self.is_write.q.val()
             & self.config_page.q.val()
             & !self.front.word_address.val().get_bits::<2>(0).any();
         self.period_cycles.next = self.active_period.q.val();
@@ -333,7 +333,7 @@ impl Logic for RegisterBank {
         }
     }
 
-    /// The word behind a port.
+    /// The words of services, line monitors and ports.
     fn reach_service(&mut self) {
         if !self.busy.val() {
             self.line_selected.d.next = self.line_page.val() | self.port_page.val();
@@ -349,12 +349,12 @@ impl Logic for RegisterBank {
         self.service.service_channels.next = self.service_selected.q.val();
         self.service.service_clear.next = self.service_first.q.val() & !self.front.lane.val().any();
         self.service.service_read.next = 0.into();
-        if self.service_first.q.val() & !self.write_now.q.val() & !self.front.lane.val().any() {
+        if self.service_first.q.val() & !self.is_write.q.val() & !self.front.lane.val().any() {
             self.service.service_read.next = self.service_selected.q.val();
         }
         self.service.service_write.next = 0.into();
         self.service.service_half.next = !self.block_at.q.val().any();
-        if self.write_now.q.val()
+        if self.is_write.q.val()
             & (self.service_first.q.val()
                 | ((self.block_at.q.val() == 1) & !self.byte_at.q.val().any()))
         {

@@ -8,7 +8,7 @@
 //! The words are held from the beginning of an answer on: a result that comes in between is in the next one.
 
 use super::RECORD_WORDS;
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -26,14 +26,17 @@ pub struct SecondRecord {
     pub take: Signal<In, Bit>,
     /// Channel whose word is wanted.
     pub channel: Signal<In, Bits<4>>,
-    /// Which of its words; behind the last one that of the check sum.
+    /// Which of its words; following the last one that of the check sum.
     pub word_at: Signal<In, Bits<4>>,
-    /// Word of the channels behind this one.
+    /// Word of the channels following this one.
     pub word_in: Signal<In, Bits<32>>,
     /// The same, or this channel's word.
     pub word: Signal<Out, Bits<32>>,
+    /// Words of the record, as of the beginning of the answer.
     held: Vec<Reg<Bits<32>>>,
+    /// Number of this channel.
     number: Constant<Bits<4>>,
+    /// Word of this channel that is asked for.
     own: Signal<Local, Bits<32>>,
     _words: usize,
 }

@@ -14,7 +14,7 @@
 //!
 //! Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
 
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::memory::Memory;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -39,7 +39,7 @@ pub const fn frame_bytes(channels: usize, additional_data: bool) -> u64 {
     set_bytes(channels, additional_data) + 2
 }
 
-/// System clock cycles from the moment when a set is closed until the next one can be.
+/// System clock cycles from the close of a set until the next one can be.
 pub const fn frame_cycles(channels: usize, additional_data: bool) -> u64 {
     BYTE_CYCLES * (set_bytes(channels, additional_data) + 3) + 2
 }
@@ -67,7 +67,7 @@ pub struct FrameBuffer {
     pub idle: Signal<Out, Bit>,
     /// A whole frame fits.
     pub room: Signal<Out, Bit>,
-    /// And behind a single one another frame, so that the sets of triggers keep their place.
+    /// A single position fits, and another frame after it, so that the sets of triggers keep their place.
     pub single_room: Vec<Signal<Out, Bit>>,
     /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
     pub block: Signal<Out, Bits<4>>,
@@ -89,46 +89,84 @@ pub struct FrameBuffer {
     pub data: Signal<Out, Bits<8>>,
     /// Strobe, with `ready` only: the byte is taken.
     pub take: Signal<In, Bit>,
+    /// Buffer of 1024 bytes.
     ram1k: Vec<Memory<8, 10>>,
+    /// Buffer of 2048 bytes.
     ram2k: Vec<Memory<8, 11>>,
+    /// Buffer of 4096 bytes.
     ram4k: Vec<Memory<8, 12>>,
+    /// Buffer of 8192 bytes.
     ram8k: Vec<Memory<8, 13>>,
+    /// High while a frame is written.
     writing: Reg<Bit>,
+    /// Which of the 16 cycles of the byte this is.
     cycle_at: Reg<Bits<4>>,
+    /// Byte of the set that is written: block in bits 6 to 3, byte in bits 2 to 0.
     at: Reg<Bits<7>>,
+    /// High while the bytes following the last block are written: CRC and end.
     in_tail: Reg<Bit>,
+    /// High while the end of the frame is written.
     is_end: Reg<Bit>,
+    /// High after the end of the frame, until the counters have settled.
     is_past: Reg<Bit>,
-    byte_now: Reg<Bits<8>>,
+    /// Byte that is written.
+    byte_held: Reg<Bits<8>>,
+    /// High if that byte is 0, which COBS replaces.
     is_zero: Reg<Bit>,
+    /// High in the last cycle of a byte.
     byte_end: Reg<Bit>,
+    /// CRC of the bytes so far; the start value while no frame is written.
     #[start(CRC16_PRESET.into())]
     crc: Reg<Bits<16>>,
+    /// Distance from the last code byte: bytes since then, plus one.
     #[start(1u64.into())]
     run: Reg<Bits<7>>,
+    /// Address of the next byte.
     write_at: Reg<Bits<13>>,
+    /// Address that is kept free for the next code byte.
     code_at: Reg<Bits<13>>,
+    /// Address following the last whole frame: the reader stops there.
     start_at: Reg<Bits<13>>,
+    /// Address of the next byte to read.
     read_at: Reg<Bits<13>>,
+    /// Bytes that wait to be read.
     used: Reg<Bits<13>>,
+    /// High if a whole frame fits.
     #[start(true)]
     fits: Reg<Bit>,
+    /// High in the cycle after a byte was taken: `used` is not up to date.
     took: Reg<Bit>,
+    /// High while the additional data of a channel are written.
     in_second: Vec<Reg<Bit>>,
+    /// High if a frame fits and leaves room for the longest one.
     single_fits: Vec<Reg<Bit>>,
+    /// Bit 7 of `run`, for sets longer than 127 bytes.
     run_high: Vec<Reg<Bit>>,
+    /// High in the last cycle of the last byte of a block.
     block_ends: Vec<Signal<Local, Bit>>,
+    /// Bit of the byte that enters the CRC in this cycle.
     bit_index: Signal<Local, Bits<3>>,
+    /// Bit that the CRC feeds back.
     feedback: Signal<Local, Bit>,
+    /// High for one cycle when the write address moves on.
     advance: Signal<Local, Bit>,
+    /// High for one cycle when the buffer is written.
     write: Signal<Local, Bit>,
+    /// Address that is written: of the byte, or of the code byte.
     write_address: Signal<Local, Bits<13>>,
+    /// Byte that is written: data, distance to the next zero, or the end.
     write_byte: Signal<Local, Bits<8>>,
+    /// Byte at the read address.
     read_byte: Signal<Local, Bits<8>>,
+    /// Number of the block following the last channel's.
     tail_block: Constant<Bits<4>>,
+    /// Highest address of the buffer.
     mask: Constant<Bits<13>>,
+    /// Most waiting bytes with which a whole frame still fits.
     most_used: Constant<Bits<13>>,
+    /// Generator of the CRC, without x^16.
     polynomial: Constant<Bits<16>>,
+    /// 1 if frames can be of more than one length.
     has_other_frames: Constant<Bit>,
     _ram1k: usize,
     _ram2k: usize,
@@ -239,19 +277,19 @@ impl Logic for FrameBuffer {
         self.is_end.d.next = self.in_tail.q.val() & self.at.q.val().get_bits::<2>(0).all();
         self.is_past.d.next = self.in_tail.q.val() & self.at.q.val().get_bit(2);
 
-        self.byte_now.d.next = self.set_byte.val();
+        self.byte_held.d.next = self.set_byte.val();
         if self.in_tail.q.val() & !self.at.q.val().get_bits::<2>(1).any() {
-            self.byte_now.d.next = self.crc.q.val().get_bits::<8>(0);
+            self.byte_held.d.next = self.crc.q.val().get_bits::<8>(0);
             if self.at.q.val().get_bit(0) {
-                self.byte_now.d.next = self.crc.q.val().get_bits::<8>(8);
+                self.byte_held.d.next = self.crc.q.val().get_bits::<8>(8);
             }
         }
-        self.is_zero.d.next = !self.byte_now.q.val().any();
+        self.is_zero.d.next = !self.byte_held.q.val().any();
 
         // A bit of the CRC in each of the second eight cycles.
         self.bit_index.next = !self.cycle_at.q.val().get_bits::<3>(0);
         self.feedback.next = self.crc.q.val().get_bit(15)
-            ^ self.byte_now.q.val().get_bit(self.bit_index.val().index());
+            ^ self.byte_held.q.val().get_bit(self.bit_index.val().index());
         if self.cycle_at.q.val().get_bit(3) & !self.in_tail.q.val() {
             self.crc.d.next = self.crc.q.val() << 1;
             if self.feedback.val() {
@@ -273,7 +311,7 @@ impl Logic for FrameBuffer {
         }
         self.write.next = self.byte_end.q.val() & !self.is_past.q.val();
         self.write_address.next = self.write_at.q.val();
-        self.write_byte.next = self.byte_now.q.val();
+        self.write_byte.next = self.byte_held.q.val();
         if self.is_zero.q.val() {
             self.write_address.next = self.code_at.q.val();
             self.write_byte.next = bit_cast::<8, 7>(self.run.q.val());

@@ -1,4 +1,4 @@
-//! One channel's part of a sample set: which trigger it took, and its result at the moment when the set is closed.
+//! One channel's part of a sample set: which trigger it took, and its result when the set is closed.
 //!
 //! ```text
 //! trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
@@ -15,7 +15,7 @@
 //! <!-- end -->
 
 use super::buffer::SetParts;
-use crate::several::each;
+use crate::replicate::each;
 use endat_regs::Protocol;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -68,33 +68,65 @@ pub struct SetChannel {
     pub owes: Signal<Out, Bit>,
     /// The result of the trigger has been replaced by another one (continuous clock).
     pub replaced: Signal<Out, Bit>,
+    /// High if the channel took the last trigger.
     took: Reg<Bit>,
+    /// High from a trigger that the channel took until its result.
     waiting: Reg<Bit>,
+    /// High if the last set was closed without this channel's result, until that comes.
     owed: Reg<Bit>,
+    /// High if such a result has come and is in no set yet; cleared when a set takes it.
     late: Reg<Bit>,
+    /// `late`, with the result of this cycle.
     late_now: Signal<Local, Bit>,
+    /// High if the channel took the trigger of the set and has its result.
     is_own: Signal<Local, Bit>,
+    /// High for one cycle when the channel's entry in the set is cleared: it has no result for it.
+    empties: Signal<Local, Bit>,
+    /// High if the block that is asked for is not this channel's.
+    is_other: Signal<Local, Bit>,
+    /// Position in the set that is being written; 0 if the channel has none for it.
     position_taken: Reg<Bits<48>>,
+    /// Parity of that position, as it came with its CRC.
     parity_taken: Reg<Bit>,
+    /// Cause, flags, valid and fresh in the set that is being written.
     status_taken: Reg<Bits<16>>,
+    /// High if the channel took the trigger of that set.
     took_taken: Reg<Bit>,
+    /// High if the result was missing when that set was closed.
     missing_taken: Reg<Bit>,
-    byte_now: Reg<Bits<8>>,
+    /// Byte of position or status that is asked for; 0 while another block is.
+    set_byte_held: Reg<Bits<8>>,
+    /// Additional data 1 in the set that is being written.
     info_1: Vec<Reg<Bits<24>>>,
+    /// Additional data 2 in the set that is being written.
     info_2: Vec<Reg<Bits<24>>>,
+    /// State of the additional data: came and good of 1, came and good of 2, due in bits 0 to 4.
     info_state: Vec<Reg<Bits<8>>>,
+    /// State of the additional data of this cycle's result.
     state_now: Vec<Signal<Local, Bits<8>>>,
+    /// Byte of the additional data that is asked for; 0 while another block is.
     info_byte: Vec<Reg<Bits<8>>>,
+    /// High while the result of the trigger is missing.
     open: Signal<Local, Bit>,
+    /// Cause, flags, valid and fresh of this cycle's result.
     status: Signal<Local, Bits<16>>,
-    upset_now: Reg<Bit>,
+    /// High with the first status byte if the stored position differs from its parity.
+    is_upset: Reg<Bit>,
+    /// Parity of the position: from its CRC, or from its bits where it has no CRC.
     parity: Signal<Local, Bit>,
+    /// Byte that goes out: the stored one, or the cause of an upset in its place.
     shown: Signal<Local, Bits<8>>,
+    /// 1 if stored positions are checked against their parity.
     has_guards: Constant<Bit>,
+    /// 1 if positions come with a CRC.
     has_crc: Constant<Bit>,
+    /// Mask of the bit of the first status byte that says the channel took the trigger.
     taken_bit: Constant<Bits<8>>,
+    /// Cause of an upset.
     upset_cause: Constant<Bits<8>>,
+    /// Number of this channel's block in a set.
     number: Constant<Bits<4>>,
+    /// 1 if a late result goes into the next set.
     takes_late: Constant<Bit>,
     _runs: usize,
     _infos: usize,
@@ -146,7 +178,7 @@ impl Logic for SetChannel {
         self.owes.next = self.open.val();
         self.replaced.next = self.took.q.val() & !self.waiting.q.val() & self.result_strobe.val();
 
-        // A result that was missing in its set, and has come since. One that comes behind it is that of another trigger.
+        // A result that was missing in its set, and has come since. A result after it belongs to another trigger.
         self.late_now.next = self.late.q.val();
         if self.result_strobe.val() {
             self.late_now.next = self.owed.q.val();
@@ -158,12 +190,12 @@ impl Logic for SetChannel {
         if self.take.val() & self.open.val() {
             self.owed.d.next = self.takes_late.val();
         }
-        // No other result of another trigger gets in: what the channel does not have is 0.
+        // Clear the entry if this trigger has no result, so that an older result is never reported as new.
         self.is_own.next = self.took.q.val() & !self.open.val();
-        self.position_taken.reset.next =
-            self.take.val() & !self.is_own.val() & !self.late_now.val();
-        self.parity_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
-        self.status_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.empties.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.position_taken.reset.next = self.empties.val();
+        self.parity_taken.reset.next = self.empties.val();
+        self.status_taken.reset.next = self.empties.val();
         self.status.next = bit_cast::<16, 5>(self.cause.val())
             | (bit_cast::<16, 1>(self.position_valid.val().into()) << 6)
             | (bit_cast::<16, 1>(self.fresh.val().into()) << 7)
@@ -190,45 +222,46 @@ impl Logic for SetChannel {
             }
         }
 
-        // Told with the status byte; the bytes before it have gone out.
-        self.upset_now.reset.next = self.block.val() != self.number.val();
-        self.upset_now.d.next = self.has_guards.val()
+        // Reported with the first status byte; the bytes before it have been sent.
+        self.is_other.next = self.block.val() != self.number.val();
+        self.is_upset.reset.next = self.is_other.val();
+        self.is_upset.d.next = self.has_guards.val()
             & (self.position_taken.q.val().xor() ^ self.parity_taken.q.val())
             & (self.byte_at.val() == 6);
         // A reset by deselection alone takes no logic.
-        self.byte_now.reset.next = self.block.val() != self.number.val();
+        self.set_byte_held.reset.next = self.is_other.val();
         match self.byte_at.val().index() {
             0 => {
-                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(0);
+                self.set_byte_held.d.next = self.position_taken.q.val().get_bits::<8>(0);
             }
             1 => {
-                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(8);
+                self.set_byte_held.d.next = self.position_taken.q.val().get_bits::<8>(8);
             }
             2 => {
-                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(16);
+                self.set_byte_held.d.next = self.position_taken.q.val().get_bits::<8>(16);
             }
             3 => {
-                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(24);
+                self.set_byte_held.d.next = self.position_taken.q.val().get_bits::<8>(24);
             }
             4 => {
-                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(32);
+                self.set_byte_held.d.next = self.position_taken.q.val().get_bits::<8>(32);
             }
             5 => {
-                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(40);
+                self.set_byte_held.d.next = self.position_taken.q.val().get_bits::<8>(40);
             }
             6 => {
-                self.byte_now.d.next = self.status_taken.q.val().get_bits::<8>(0)
+                self.set_byte_held.d.next = self.status_taken.q.val().get_bits::<8>(0)
                     | (bit_cast::<8, 1>(self.took_taken.q.val().into()) << 5);
             }
             _ => {
-                self.byte_now.d.next = self.status_taken.q.val().get_bits::<8>(8)
+                self.set_byte_held.d.next = self.status_taken.q.val().get_bits::<8>(8)
                     | (bit_cast::<8, 1>(self.missing_taken.q.val().into()) << 7);
             }
         }
-        self.shown.next = self.byte_now.q.val();
-        if self.upset_now.q.val() {
+        self.shown.next = self.set_byte_held.q.val();
+        if self.is_upset.q.val() {
             self.shown.next =
-                (self.byte_now.q.val() & self.taken_bit.val()) | self.upset_cause.val();
+                (self.set_byte_held.q.val() & self.taken_bit.val()) | self.upset_cause.val();
         }
         self.set_byte.next = self.shown.val();
         for i in 0..self._infos {
@@ -239,6 +272,7 @@ impl Logic for SetChannel {
             self.info_1[i].d.next = self.info_1[i].q.val();
             self.info_2[i].d.next = self.info_2[i].q.val();
             self.info_state[i].d.next = self.info_state[i].q.val();
+            // Came and good of each word, and due, which is the same for both.
             self.state_now[i].next = 0.into();
             if self.word_1[i].val().get_bit(24) {
                 self.state_now[i].next = self.state_now[i].val() | 1;
@@ -256,21 +290,17 @@ impl Logic for SetChannel {
                 self.state_now[i].next = self.state_now[i].val() | 16;
             }
             // They belong to the result, or there is none.
-            self.info_1[i].reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
-            self.info_2[i].reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
-            self.info_state[i].reset.next =
-                self.take.val() & !self.is_own.val() & !self.late_now.val();
+            self.info_1[i].reset.next = self.empties.val();
+            self.info_2[i].reset.next = self.empties.val();
+            self.info_state[i].reset.next = self.empties.val();
             if self.take.val() {
                 self.info_1[i].d.next = self.word_1[i].val().get_bits::<24>(0);
                 self.info_2[i].d.next = self.word_2[i].val().get_bits::<24>(0);
                 self.info_state[i].d.next = self.state_now[i].val();
             }
-            self.byte_now.reset.next =
-                (self.block.val() != self.number.val()) | self.second[i].val();
-            self.upset_now.reset.next =
-                (self.block.val() != self.number.val()) | self.second[i].val();
-            self.info_byte[i].reset.next =
-                (self.block.val() != self.number.val()) | !self.second[i].val();
+            self.set_byte_held.reset.next = self.is_other.val() | self.second[i].val();
+            self.is_upset.reset.next = self.is_other.val() | self.second[i].val();
+            self.info_byte[i].reset.next = self.is_other.val() | !self.second[i].val();
             match self.byte_at.val().index() {
                 0 => {
                     self.info_byte[i].d.next = self.info_1[i].q.val().get_bits::<8>(0);

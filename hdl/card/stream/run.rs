@@ -29,7 +29,7 @@ pub struct RunChannel {
     pub result_strobe: Signal<In, Bit>,
     /// Number of results.
     pub sequence: Signal<In, Bits<16>>,
-    /// Moment of the position.
+    /// Time stamp of the position.
     pub first_fall_timestamp: Signal<In, Bits<32>>,
     /// The channel whose turn it is.
     pub turn: Signal<In, Bits<3>>,
@@ -37,8 +37,8 @@ pub struct RunChannel {
     pub ready: Signal<Out, Bit>,
     /// With `ready` the number of its result, else 0.
     pub ready_sequence: Signal<Out, Bits<16>>,
-    /// With `ready` its moment, else 0.
-    pub ready_moment: Signal<Out, Bits<32>>,
+    /// With `ready` its time stamp, else 0.
+    pub ready_timestamp: Signal<Out, Bits<32>>,
     /// With `ready` the first byte of its set, else 0.
     pub ready_head: Signal<Out, Bits<8>>,
     /// With `ready` the place of the channel in a set, else 0.
@@ -51,12 +51,19 @@ pub struct RunChannel {
     pub lost: Signal<Out, Bit>,
     /// Strobe: it has been counted.
     pub counted: Signal<In, Bit>,
+    /// High from a trigger that the channel takes until its result: that one is not for a set of its own.
     asked: Reg<Bit>,
+    /// High while a position of the running clock waits for its set.
     waits: Reg<Bit>,
+    /// High if a position was replaced before it was taken, until that is counted.
     dropped: Reg<Bit>,
+    /// High if a position waits, and it is this channel's turn.
     ready_now: Signal<Local, Bit>,
+    /// Number of this channel.
     number: Constant<Bits<3>>,
+    /// First byte of this channel's sets.
     head: Constant<Bits<8>>,
+    /// Place of the channel in a set: 8 times its block.
     place: Constant<Bits<7>>,
 }
 
@@ -98,12 +105,12 @@ impl Logic for RunChannel {
         self.ready.next = self.ready_now.val();
         self.take_run.next = self.ready_now.val() & self.take.val();
         self.ready_sequence.next = 0.into();
-        self.ready_moment.next = 0.into();
+        self.ready_timestamp.next = 0.into();
         self.ready_head.next = 0.into();
         self.ready_place.next = 0.into();
         if self.ready_now.val() {
             self.ready_sequence.next = self.sequence.val();
-            self.ready_moment.next = self.first_fall_timestamp.val();
+            self.ready_timestamp.next = self.first_fall_timestamp.val();
             self.ready_head.next = self.head.val();
             self.ready_place.next = self.place.val();
         }

@@ -7,7 +7,7 @@
 
 use super::map::input;
 use crate::ports::{AdditionalDataIn, FrameEndIn, ServiceOrdersOut};
-use crate::several::each;
+use crate::replicate::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;

@@ -5,10 +5,10 @@ use super::specials::{Special, Specials};
 use endat_regs::protocols::ssi::frame;
 use std::ops::RangeInclusive;
 
-/// A bit behind the position.
+/// Parity bit following the position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Parity {
-    /// There is none.
+    /// No parity bit.
     #[default]
     None,
     /// With it the number of ones is even.
@@ -24,7 +24,7 @@ pub struct SsiSpec {
     pub gray: bool,
     /// Each position comes twice, and the two are compared.
     pub twice: bool,
-    /// What stands behind each.
+    /// Parity bit following each position.
     pub parity: Parity,
     /// Special bits before the position.
     pub before: Specials,

@@ -216,7 +216,7 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec) {
     }
 }
 
-/// The LOW behind the last bit must still be there where it is looked at: a period behind the last rising edge.
+/// DATA must still be LOW when it is checked, a period after the last rising edge.
 fn check_recovery_low(
     check: &mut Check<'_>,
     request: &ChannelSpec,

@@ -26,7 +26,7 @@ use crate::lowest_cause::LowestCause;
 use crate::ports::FrameResultOut;
 use crate::snapshot::{Snapshot, Withdrawal};
 use rtl_design::reg::Reg;
-use rtl_design::{kernel, Block};
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 pub use endat_regs::protocols::ssi::frame;
@@ -66,80 +66,134 @@ pub struct SsiPort {
     /// Strobe: a frame has ended.
     pub over: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
-    pub displaced: Signal<Out, Bit>,
+    pub trigger_lost: Signal<Out, Bit>,
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
+    /// Synchroniser and filter of DATA.
     filter: InputFilter,
+    /// Cause of the result.
     #[start]
     primary: LowestCause,
+    /// Result registers.
     snapshot: Snapshot,
+    /// Bits of a frame that are not position, if the encoder has any.
     special: Vec<SpecialBits>,
-    // As after a frame of which nothing is known: a reset may have come in the middle of one.
+    /// State of the frame; starts in `LAST`, because a reset can come in the middle of a frame.
     #[start(STATE_LAST.into())]
     state: Reg<Bits<4>>,
+    /// Clock to the transceiver; HIGH at rest.
     #[start(true)]
     clk: Reg<Bit>,
+    /// System clock cycles until the state can end.
     timer: Reg<Bits<13>>,
+    /// Bits of the copy that are still to come.
     left: Reg<Bits<6>>,
+    /// Second copy of `left`, compared with it as a guard.
     left_too: Reg<Bits<6>>,
+    /// High after an upset of state, clock or bit counts, until the port is at rest.
     torn: Reg<Bit>,
-    // The next rising edge brings no bit: the first one of a copy. In `LAST`: wait for another period.
+    /// High until the first rising edge of a copy, which brings no bit. In `LAST`: wait for another period.
     #[start(true)]
     first: Reg<Bit>,
+    /// Second copy of `first`, compared with it as a guard.
     #[start(true)]
     first_too: Reg<Bit>,
+    /// High while the second copy of a position comes.
     second: Reg<Bit>,
+    /// Position as it comes, most significant bit first.
     word: Reg<Bits<48>>,
+    /// Position of the second copy.
     again: Reg<Bits<48>>,
+    /// Parity of the bits stored in `word`, formed as they came.
     sum: Reg<Bit>,
+    /// Parity of the bits of this copy as they were sent.
     ones: Reg<Bit>,
+    /// High if the parity bit of a copy was wrong; cleared by a trigger.
     not_even: Reg<Bit>,
+    /// High if DATA was HIGH between two copies or at the end of the frame; cleared by a trigger.
     #[start(true)]
     not_low: Reg<Bit>,
+    /// High if a trigger was lost, until a result reports it.
     lost: Reg<Bit>,
-    // `displaced`.
+    /// High in the cycle after a trigger was lost.
     is_lost: Reg<Bit>,
+    /// High if DATA was still LOW after the longest recovery time, until a result reports it.
     slow: Reg<Bit>,
+    /// High from the first falling edge of the clock until the port is at rest.
     fallen: Reg<Bit>,
-    // With `not_low`: a reset has come, no frame.
+    /// High if the kind of frame is one that must not go out. With `not_low`: no frame yet since a reset.
     #[start(true)]
     unknown: Reg<Bit>,
+    /// High if DATA was LOW before the first bit of the last frame.
     not_high: Reg<Bit>,
+    /// Clock period; one that is too short counts as 4 cycles more.
     period: Signal<Local, Bits<11>>,
+    /// Length of a LOW phase.
     low_cycles: Signal<Local, Bits<11>>,
+    /// Length of a HIGH phase.
     high_cycles: Signal<Local, Bits<11>>,
+    /// High if the timer has run out.
     is_due: Signal<Local, Bit>,
+    /// High if the next rising edge takes the last bit of the frame.
     is_last: Signal<Local, Bit>,
+    /// High for one cycle when a bit is taken.
     takes_bit: Signal<Local, Bit>,
+    /// Bits of a copy, with those that are not position.
     bits: Signal<Local, Bits<6>>,
+    /// High if the bit belongs to the position, or is its parity bit.
     is_position: Signal<Local, Bit>,
+    /// Raw flags that the special bits give.
     special_found: Signal<Local, Bits<12>>,
+    /// Special bits that the result shows.
     shown: Signal<Local, Bits<8>>,
+    /// High if the bit is the last one of a copy.
     ends_copy: Signal<Local, Bit>,
+    /// High if the bit is the parity bit of the position.
     is_parity: Signal<Local, Bit>,
+    /// Bit that came before, for Gray code.
     bit_before: Signal<Local, Bit>,
+    /// Bit of the position, decoded.
     value: Signal<Local, Bit>,
+    /// High if the two copies differ.
     is_other: Signal<Local, Bit>,
+    /// High if the state is none, or the clock does not fit it.
     is_astray: Signal<Local, Bit>,
+    /// `torn`, with the upsets of this cycle.
     is_torn: Signal<Local, Bit>,
+    /// High if not all bits of all copies have come.
     is_short: Signal<Local, Bit>,
+    /// High if an upset has changed the frame, or bits are missing.
     is_upset: Signal<Local, Bit>,
+    /// High for one cycle when the result of a frame is published.
     publishes: Signal<Local, Bit>,
+    /// High if the encoder is ready for the next frame before the longest recovery time is over.
     ready: Signal<Local, Bit>,
+    /// High for one cycle when DATA is still LOW after the longest recovery time.
     is_late: Signal<Local, Bit>,
+    /// High if nothing is wrong with the frame.
     good: Signal<Local, Bit>,
+    /// High for one cycle when a trigger is lost.
     loses: Signal<Local, Bit>,
+    /// Raw flags of the frame itself.
     found: Signal<Local, Bits<6>>,
+    /// Raw flags of the result.
     raised: Signal<Local, Bits<16>>,
+    /// 1 if upsets of stored bits are detected.
     has_guards: Constant<Bit>,
-    // Nothing can be said of DATA after the last bit: no check there, and the recovery time lasts as long as it may.
+    /// 1 if DATA keeps the last bit to the end of the recovery time: it is not checked then.
     holds_end: Constant<Bit>,
+    /// State: no frame.
     at_rest: Constant<Bits<4>>,
+    /// State: clock LOW.
     at_low: Constant<Bits<4>>,
+    /// State: clock HIGH between two bits.
     at_high: Constant<Bits<4>>,
+    /// State: clock HIGH after the last bit, for one period.
     at_last: Constant<Bits<4>>,
+    /// State: recovery time.
     at_recovery: Constant<Bits<4>>,
+    /// State: the result is published.
     at_judge: Constant<Bits<4>>,
     _specials: usize,
 }
@@ -153,7 +207,7 @@ const STATE_RECOVERY: u64 = 9;
 const STATE_JUDGE: u64 = 10;
 
 impl SsiPort {
-    /// For what is asked, as far as no setting says it: special bits, and how a frame ends; `guards` look for upsets of stored bits.
+    /// For the parts of `asked` that are not settings: special bits, and the end of a frame; `guards` detect upsets of stored bits.
     pub fn new(asked: &SsiSpec, guards: bool) -> Self {
         let special: Vec<SpecialBits> = match asked.has_specials() {
             true => vec![SpecialBits::new(&asked.before, &asked.after, guards)],
@@ -181,311 +235,6 @@ impl SsiPort {
     }
 }
 
-#[kernel]
-impl Logic for SsiPort {
-    fn update(&mut self) {
-        clock!(self, clock, filter, snapshot);
-        self.filter.reset.next = self.reset.val();
-        self.snapshot.reset.next = self.reset.val();
-        connect!(self.filter <= self; pin = data_i, filter_cycles);
-        self.filter.filter_half.next = false;
-        self.filter.majority.next = false;
-        self.filter.both_edges.next = false;
-        self.time_clock();
-        self.clock_frame();
-        self.take_bits();
-        self.look_at_special_bits();
-        self.recover();
-        self.judge();
-        self.show_result();
-    }
-
-    /// Lengths of both halves of a period, and the end of the one under way.
-    fn time_clock(&mut self) {
-        // A shorter one has no halves.
-        self.period.next = self.period_cycles.val();
-        if !self.period_cycles.val().get_bits::<9>(2).any() {
-            self.period.next = self.period_cycles.val() | 4;
-        }
-        self.low_cycles.next = self.period.val() >> 1;
-        self.high_cycles.next = self.period.val() - self.low_cycles.val();
-        self.is_due.next = !self.timer.q.val().any();
-        if self.timer.q.val().any() {
-            self.timer.d.next = self.timer.q.val() - 1;
-        }
-    }
-
-    /// The clock, and whose turn it is.
-    fn clock_frame(&mut self) {
-        self.bits.next = self.position_bits.val();
-        if self.frame.val().get_bit(3) {
-            self.bits.next = self.position_bits.val() + 1;
-        }
-        for i in 0..self._specials {
-            self.bits.next = self.special[i].all_bits.val();
-        }
-        self.ends_copy.next = !self.left.q.val().get_bits::<5>(1).any();
-        // This rising edge takes the last bit of the frame.
-        self.is_last.next = !self.first.q.val()
-            & self.ends_copy.val()
-            & (self.second.q.val() | !self.frame.val().get_bit(1));
-        // No upset keeps the clock LOW.
-        self.clk.d.next = self.state.q.val() != self.at_low.val();
-        self.is_astray.next = self.has_guards.val()
-            & (self.state.q.val().xor()
-                | (self.clk.q.val() == (self.state.q.val() == self.at_low.val())));
-        if self.state.q.val() == self.at_rest.val() {
-            if self.trigger.val() {
-                self.unknown.d.next = !self.frame.val().get_bit(2);
-                self.not_high.d.next = !self.filter.level.val();
-                self.not_low.d.next = false;
-                self.first.d.next = true;
-                self.first_too.d.next = true;
-                self.second.d.next = false;
-                self.sum.d.next = false;
-                self.ones.d.next = false;
-                self.not_even.d.next = false;
-                self.left.d.next = self.bits.val();
-                self.left_too.d.next = self.bits.val();
-                self.state.d.next = self.at_judge.val();
-                if self.frame.val().get_bit(2) & self.filter.level.val() {
-                    self.clk.d.next = false;
-                    self.state.d.next = self.at_low.val();
-                    self.timer.d.next = bit_cast::<13, 11>(self.low_cycles.val())
-                        + bit_cast::<13, 11>(self.first_low_extra_cycles.val())
-                        - 1;
-                }
-            }
-        } else if self.state.q.val() == self.at_judge.val() {
-            self.state.d.next = self.at_recovery.val();
-        } else if self.is_due.val() {
-            if self.state.q.val() == self.at_low.val() {
-                self.clk.d.next = true;
-                self.state.d.next = self.at_high.val();
-                self.timer.d.next = bit_cast::<13, 11>(self.high_cycles.val()) - 1;
-                if self.is_last.val() {
-                    self.state.d.next = self.at_last.val();
-                    self.timer.d.next = bit_cast::<13, 11>(self.period.val()) - 1;
-                }
-            } else if self.state.q.val() == self.at_high.val() {
-                self.clk.d.next = false;
-                self.state.d.next = self.at_low.val();
-                self.timer.d.next = bit_cast::<13, 11>(self.low_cycles.val()) - 1;
-            } else if self.state.q.val() == self.at_last.val() {
-                self.first.d.next = false;
-                self.first_too.d.next = false;
-                self.timer.d.next = bit_cast::<13, 11>(self.period.val()) - 1;
-                if !self.first.q.val() {
-                    self.state.d.next = self.at_judge.val();
-                    self.timer.d.next = self.recovery_limit_cycles.val();
-                    self.not_low.d.next =
-                        self.not_low.q.val() | (self.filter.level.val() & !self.holds_end.val());
-                }
-            } else {
-                // Whatever the line does: a trigger looks at it again.
-                self.state.d.next = self.at_rest.val();
-            }
-        }
-        if self.ready.val() {
-            self.state.d.next = self.at_rest.val();
-        }
-        // An upset ends the frame.
-        if self.is_astray.val() {
-            self.clk.d.next = true;
-            self.state.d.next = self.at_last.val();
-        }
-    }
-
-    /// What the line says at each rising edge of the clock but the first of a copy, most significant bit first.
-    fn take_bits(&mut self) {
-        self.takes_bit.next =
-            (self.state.q.val() == self.at_low.val()) & self.is_due.val() & !self.first.q.val();
-        self.bit_before.next = self.word.q.val().get_bit(0);
-        if self.second.q.val() {
-            self.bit_before.next = self.again.q.val().get_bit(0);
-        }
-        self.value.next =
-            self.filter.level.val() ^ (self.bit_before.val() & self.frame.val().get_bit(0));
-        if (self.state.q.val() == self.at_low.val()) & self.is_due.val() {
-            self.first.d.next = false;
-            self.first_too.d.next = false;
-            // HIGH before the first bit, LOW between two copies.
-            if self.first.q.val() {
-                if self.second.q.val() {
-                    self.not_low.d.next = self.not_low.q.val() | self.filter.level.val();
-                } else {
-                    self.not_high.d.next = !self.filter.level.val();
-                }
-            }
-        }
-        self.is_parity.next = self.frame.val().get_bit(3) & self.ends_copy.val();
-        for i in 0..self._specials {
-            self.is_parity.next = self.frame.val().get_bit(3) & self.special[i].ends_position.val();
-        }
-        if self.takes_bit.val() {
-            self.left.d.next = self.left.q.val() - 1;
-            self.left_too.d.next = self.left_too.q.val() - 1;
-            if self.is_position.val() {
-                // Of the bits as they are sent.
-                self.ones.d.next = self.ones.q.val() ^ self.filter.level.val();
-                if self.is_parity.val() {
-                    self.not_even.d.next = self.not_even.q.val()
-                        | (self.ones.q.val()
-                            ^ self.filter.level.val()
-                            ^ self.frame.val().get_bit(4));
-                } else {
-                    if self.second.q.val() {
-                        self.again.d.next =
-                            (self.again.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
-                    } else {
-                        self.word.d.next =
-                            (self.word.q.val() << 1) | bit_cast::<48, 1>(self.value.val().into());
-                        self.sum.d.next = self.sum.q.val() ^ self.value.val();
-                    }
-                }
-            }
-            // The second copy begins as the first one.
-            if self.ends_copy.val() & !self.second.q.val() & self.frame.val().get_bit(1) {
-                self.second.d.next = true;
-                self.first.d.next = true;
-                self.first_too.d.next = true;
-                self.ones.d.next = false;
-                self.left.d.next = self.bits.val();
-                self.left_too.d.next = self.bits.val();
-            }
-        }
-        if (self.state.q.val() == self.at_rest.val()) & self.trigger.val() {
-            self.word.d.next = 0.into();
-            self.again.d.next = 0.into();
-        }
-    }
-
-    /// The bits that are not position, if there are any.
-    fn look_at_special_bits(&mut self) {
-        self.is_position.next = true;
-        self.special_found.next = 0.into();
-        self.shown.next = 0.into();
-        for i in 0..self._specials {
-            connect!(self.special[i] <= self; clock, reset, position_bits);
-            self.special[i].has_parity.next = self.frame.val().get_bit(3);
-            self.special[i].begins.next =
-                (self.state.q.val() == self.at_rest.val()) & self.trigger.val();
-            self.special[i].repeats.next = (self.state.q.val() == self.at_low.val())
-                & self.is_due.val()
-                & self.first.q.val()
-                & self.second.q.val();
-            self.special[i].takes.next = self.takes_bit.val();
-            self.special[i].level.next = self.filter.level.val();
-            self.special[i].left.next = self.left.q.val();
-            self.special[i].heard.next = !self.unknown.q.val() & !self.not_high.q.val();
-            self.is_position.next = self.special[i].is_position.val();
-            self.special_found.next = self.special[i].found.val();
-            self.shown.next = self.special[i].shown.val();
-        }
-    }
-
-    /// How the recovery time ends.
-    fn recover(&mut self) {
-        // The encoder is ready again, if DATA was LOW before.
-        self.ready.next = (self.state.q.val() == self.at_recovery.val())
-            & self.filter.level.val()
-            & !self.not_low.q.val()
-            & !self.torn.q.val()
-            & !self.holds_end.val();
-        // DATA is LOW for another reason than the end of a frame: the position may be wrong.
-        self.is_late.next = (self.state.q.val() == self.at_recovery.val())
-            & self.is_due.val()
-            & !self.filter.level.val()
-            & self.good.val();
-    }
-
-    /// What the frame is worth: a bit for each cause, in the order of their codes.
-    fn judge(&mut self) {
-        self.busy.next = self.state.q.val() != self.at_rest.val();
-        self.publishes.next = (self.state.q.val() == self.at_judge.val())
-            & !(self.unknown.q.val() & self.not_low.q.val());
-        // A trigger that was not taken is told by the result of the frame under way, or of the next one.
-        if self.publishes.val() {
-            self.lost.d.next = false;
-            self.slow.d.next = false;
-        }
-        self.loses.next = self.trigger.val() & (self.state.q.val() != self.at_rest.val());
-        self.is_lost.d.next = self.loses.val();
-        self.displaced.next = self.is_lost.q.val();
-        if self.loses.val() {
-            self.lost.d.next = true;
-        }
-        if self.is_late.val() {
-            self.slow.d.next = true;
-        }
-        self.is_other.next =
-            self.frame.val().get_bit(1) & (self.word.q.val() != self.again.q.val());
-        // The bits are counted twice: a copy that is short by one fits the next one that begins a bit too soon.
-        self.is_torn.next = self.has_guards.val()
-            & (self.torn.q.val()
-                | self.is_astray.val()
-                | (self.left.q.val() != self.left_too.q.val())
-                | (self.first.q.val() != self.first_too.q.val()));
-        self.torn.d.next = self.is_torn.val()
-            & (self.is_astray.val() | (self.state.q.val() != self.at_rest.val()));
-        // All bits have come, in as many copies as were asked for.
-        self.is_short.next = (self.left.q.val().any()
-            | (self.second.q.val() ^ self.frame.val().get_bit(1)))
-            & !self.unknown.q.val()
-            & !self.not_high.q.val();
-        // What is stored is what came.
-        self.is_upset.next = self.is_short.val()
-            | (self.has_guards.val()
-                & (self.is_torn.val() | (self.word.q.val().xor() ^ self.sum.q.val())));
-        self.found.next = bit_cast::<6, 1>(self.unknown.q.val().into())
-            | (bit_cast::<6, 1>(self.not_high.q.val().into()) << 1)
-            | (bit_cast::<6, 1>(self.not_low.q.val().into()) << 2)
-            | (bit_cast::<6, 1>(self.not_even.q.val().into()) << 3)
-            | (bit_cast::<6, 1>(self.is_other.val().into()) << 4)
-            | (bit_cast::<6, 1>(self.is_upset.val().into()) << 5);
-        self.good.next = !self.found.val().any() & !self.special_found.val().any();
-        // A lost trigger is for the next result, not for what has become of this one.
-        self.raised.next = bit_cast::<16, 6>(self.found.val())
-            | (bit_cast::<16, 1>((self.lost.q.val() & !self.is_late.val()).into()) << 6)
-            | (bit_cast::<16, 1>((self.slow.q.val() | self.is_late.val()).into()) << 7)
-            | bit_cast::<16, 12>(self.special_found.val());
-        self.primary.flags.next = self.raised.val();
-        for i in 0..self._specials {
-            // With a lost trigger, or a late end of the frame before, the position would have been taken.
-            if self.special[i].found.val().any() {
-                self.primary.flags.next = self.raised.val() & 0xFF3F;
-            }
-        }
-    }
-
-    /// The last good position, and why there is no newer one.
-    fn show_result(&mut self) {
-        connect!(self.snapshot <= self; tick_us, timestamp);
-        self.fallen.d.next =
-            (self.fallen.q.val() | !self.clk.q.val()) & (self.state.q.val() != self.at_rest.val());
-        self.snapshot.first_fall.next =
-            !self.clk.q.val() & !self.fallen.q.val() & self.first.q.val();
-        self.snapshot.latched.next = false;
-        self.snapshot.delay_cycles.next = 0.into();
-        self.snapshot.told.publish.next = self.publishes.val();
-        self.snapshot.told.good.next = self.publishes.val() & self.good.val();
-        self.snapshot.told.late_fault.next = self.is_late.val();
-        self.snapshot.told.withdraw.next = self.is_late.val();
-        // The age counts from the result on.
-        self.snapshot.told.confirm.next = true;
-        self.snapshot.width_in.next = 0.into();
-        self.snapshot.has_f2_in.next = false;
-        self.snapshot.position_in.next = self.word.q.val();
-        self.snapshot.crc_received_in.next = 0.into();
-        self.snapshot.crc_computed_in.next = 0.into();
-        self.snapshot.told.cause_told.next = self.primary.cause.val();
-        self.snapshot.told.flags_told.next =
-            bit_cast::<20, 16>(self.raised.val()) | (bit_cast::<20, 8>(self.shown.val()) << 12);
-        self.over.next = self.publishes.val();
-        self.ssi_clk.next = self.clk.q.val();
-        FrameResultOut::link(&mut self.result, &mut self.snapshot.result);
-    }
-}
-
+mod kernel;
 #[cfg(test)]
 mod tests;

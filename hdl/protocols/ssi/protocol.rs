@@ -1,12 +1,12 @@
 //! SSI protocol facts. Plain Rust, no hardware.
 //!
 //! Ref: HEIDENHAIN, PWM 20 operating instructions, 2014, interface description (order of a frame, same value again within the recovery time);
-//! POSITAL, "SSI", technology page (n + 1 clocks, LOW behind the last bit and between copies); Kuebler, "Synchronous Serial Interface" (monoflop
+//! POSITAL, "SSI", technology page (n + 1 clocks, LOW after the last bit and between copies); Kuebler, "Synchronous Serial Interface" (monoflop
 //! time up to 40 us); TR-Electronic, COK-65 interface description (delay tV from clock to bit, pause of twice the monoflop time).
 
 use crate::endat::timing::cycles_to_ns;
 
-/// Usual longest time from a rising clock edge to its bit, at the encoder, in ns. Data sheets give 100 ns and more; no source has an upper
+/// Typical longest time from a rising clock edge to its bit, at the encoder, in ns. Data sheets give 100 ns and more; no source has an upper
 /// limit for all encoders.
 pub const BIT_DELAY_NS: u64 = 400;
 /// Longest such time that may be asked for, in ns: most of a period of the slowest clock.

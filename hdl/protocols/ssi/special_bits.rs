@@ -53,45 +53,83 @@ pub struct SpecialBits {
     pub found: Signal<Out, Bits<12>>,
     /// Those that are shown, as they came last; the last one in bit 0, and 0 where a bit between them is not shown.
     pub shown: Signal<Out, Bits<8>>,
+    /// Special bits from the first to the last one that is shown, the last one in bit 0.
     status: Reg<Bits<14>>,
+    /// Parity of the bits stored in `status`, formed as they came.
     sum: Reg<Bit>,
-    // Alarm, power failure, not valid, of the copy before.
+    /// Alarm, power failure, not valid, as the first copy gave them.
     bad_before: Reg<Bits<3>>,
+    /// Parity of all bits of the copy so far.
     ones: Reg<Bit>,
+    /// High if the parity bit of a copy was wrong.
     is_odd: Reg<Bit>,
+    /// CRC of the copy so far; 0 after its CRC bits if they are right.
     crc: Reg<Bits<6>>,
+    /// High if the CRC of a copy was wrong.
     is_wrong: Reg<Bit>,
+    /// Bits of the position and its parity bit.
     own_bits: Signal<Local, Bits<6>>,
+    /// High if the bit comes before the position.
     is_before: Signal<Local, Bit>,
+    /// High if the bit comes after the position.
     is_after: Signal<Local, Bit>,
+    /// High for one cycle when the bit is stored.
     stores: Signal<Local, Bit>,
+    /// High if a 1 leaves the shift register as the bit enters.
     falls_out: Signal<Local, Bit>,
-    crc_next: Signal<Local, Bits<6>>,
+    /// CRC with the bit that is taken.
+    crc_shifted: Signal<Local, Bits<6>>,
+    /// Alarm, power failure, not valid, of both copies.
     bad: Signal<Local, Bits<3>>,
+    /// High if the stored bits differ from their parity.
     is_upset: Signal<Local, Bit>,
+    /// 1 if stored bits are checked against their parity.
     has_guards: Constant<Bit>,
+    /// 1 if special bits come before the position.
     has_before: Constant<Bit>,
+    /// 1 if special bits come after the position.
     has_after: Constant<Bit>,
+    /// 1 if bits follow the last one that is shown.
     has_tail: Constant<Bit>,
+    /// 1 if special bits are stored.
     has_stored: Constant<Bit>,
+    /// 1 if a special bit is a parity bit.
     has_check: Constant<Bit>,
+    /// 1 if special bits are a CRC.
     has_crc: Constant<Bit>,
+    /// Number of special bits.
     count: Constant<Bits<6>>,
+    /// Number of special bits after the position.
     after: Constant<Bits<6>>,
+    /// Bits left of the copy at the last bit of the position.
     position_last: Constant<Bits<6>>,
+    /// Number of bits that follow the last one that is shown.
     tail: Constant<Bits<6>>,
+    /// Bits of `status` that are used.
     stored_mask: Constant<Bits<14>>,
+    /// Highest bit of `status` that is used.
     first_mask: Constant<Bits<14>>,
+    /// Bits of `status` that the result shows.
     shown_mask: Constant<Bits<8>>,
+    /// Bits of `status` that are alarms.
     alarm_mask: Constant<Bits<14>>,
+    /// Bits of `status` that are alarms at 0.
     alarm_low: Constant<Bits<14>>,
+    /// Bits of `status` that are power failures.
     power_fail_mask: Constant<Bits<14>>,
+    /// Bits of `status` that are power failures at 0.
     power_fail_low: Constant<Bits<14>>,
+    /// Bits of `status` that say the position is not valid.
     not_valid_mask: Constant<Bits<14>>,
+    /// Bits of `status` that say it at 0.
     not_valid_low: Constant<Bits<14>>,
+    /// Bits left of the copy at the parity bit.
     parity_place: Constant<Bits<6>>,
+    /// 1 if the parity is odd.
     parity_is_odd: Constant<Bit>,
+    /// Bits left of the copy at the last bit of the CRC.
     crc_place: Constant<Bits<6>>,
+    /// Generator of the CRC, without x^6.
     polynomial: Constant<Bits<6>>,
 }
 
@@ -179,9 +217,9 @@ impl Logic for SpecialBits {
             ) << 2);
 
         // Of all bits as they are sent.
-        self.crc_next.next = self.crc.q.val() << 1;
+        self.crc_shifted.next = self.crc.q.val() << 1;
         if self.crc.q.val().get_bit(5) ^ self.level.val() {
-            self.crc_next.next = (self.crc.q.val() << 1) ^ self.polynomial.val();
+            self.crc_shifted.next = (self.crc.q.val() << 1) ^ self.polynomial.val();
         }
         if self.takes.val() {
             self.ones.d.next = self.ones.q.val() ^ self.level.val();
@@ -189,10 +227,10 @@ impl Logic for SpecialBits {
                 self.is_odd.d.next = self.is_odd.q.val()
                     | (self.ones.q.val() ^ self.level.val() ^ self.parity_is_odd.val());
             }
-            self.crc.d.next = self.crc_next.val();
-            // A CRC behind what it is of leaves nothing.
+            self.crc.d.next = self.crc_shifted.val();
+            // Bits followed by their CRC leave 0.
             if self.has_crc.val() & (self.left.val() == self.crc_place.val()) {
-                self.is_wrong.d.next = self.is_wrong.q.val() | self.crc_next.val().any();
+                self.is_wrong.d.next = self.is_wrong.q.val() | self.crc_shifted.val().any();
             }
         }
         if self.repeats.val() {

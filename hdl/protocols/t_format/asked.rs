@@ -21,12 +21,12 @@ pub struct TFormatSpec {
 
 impl Default for TFormatSpec {
     fn default() -> Self {
-        let usual = TFormatStart::default();
+        let default = TFormatStart::default();
         Self {
             bit_hz: BIT_HZ,
             request: Request::Everything,
-            reply_gap_us: usual.reply_gap_us,
-            field_gap_us: usual.field_gap_us,
+            reply_gap_us: default.reply_gap_us,
+            field_gap_us: default.field_gap_us,
         }
     }
 }

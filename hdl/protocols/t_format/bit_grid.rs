@@ -24,6 +24,7 @@ pub struct BitGrid {
     pub restart: Signal<In, Bit>,
     /// High for one cycle in the middle of each bit.
     pub strobe: Signal<Out, Bit>,
+    /// Counts the cycles of a bit down to 1; the strobe is at 2.
     left: Reg<Bits<7>>,
 }
 

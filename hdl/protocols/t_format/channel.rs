@@ -48,13 +48,17 @@ pub struct TFormatChannel {
     pub driver: Signal<Out, Bit>,
     /// An exchange is under way.
     pub busy: Signal<Out, Bit>,
-    /// What stands at the outputs of a receiver without registers.
+    /// Outputs of a receiver without registers.
     #[bundle]
     pub reading: ReadingOut,
+    /// Synchroniser and filter of the line.
     filter: InputFilter,
+    /// Request and reply.
     exchange: Exchange,
+    /// Fields of the reply while they come.
     #[start]
     reply: Reply,
+    /// Result registers.
     outcome: Outcome,
 }
 

@@ -1,9 +1,9 @@
-//! T-format receiver behind the 16-bit bus of a signal processor.
+//! T-format receiver at the 16-bit bus of a signal processor.
 //!
 //! ```text
 //! bus pins --BusStrobes--> request, settings --> Exchange -> transceiver
 //!                                                   ^   |
-//! transceiver -> InputFilter -----------------------+-> ReplyBytes -> Moments -> bus_data_o
+//! transceiver -> InputFilter -----------------------+-> ReplyBytes -> ResultBanks -> bus_data_o
 //! ```
 //!
 //! | address | read 7..0 | read 15..8 | write |
@@ -20,14 +20,14 @@
 //! Control data: 3:0 ID of the reply, 4 it is that of the request, 5 communication alarm, 7 fresh. Communication alarm: 0 no
 //! answer, 1 no header, 2 field missing, 3 delimiter, 4 parity, 5 another ID, 6 CRC, 7 the encoder complains.
 //!
-//! Data stand at the pins 4 clocks after the address and change 4 clocks after it changes. Reading address 0 takes the moment that
+//! Data are at the pins 4 clocks after the address and change 4 clocks after it changes. Reading address 0 latches what
 //! addresses 1 to 7 show, bit 15 of address 7 excepted. While that bit is set writes are ignored, but a request counts as trigger.
 
 use super::exchange::Exchange;
-use super::moments::Moments;
 use super::ports::{FieldBitsOut, ReplyPartsOut};
 use super::protocol::{BIT_HZ, FAST_BIT_HZ, SYSTEM_HZ};
 use super::reply_bytes::ReplyBytes;
+use super::result_banks::ResultBanks;
 use crate::card::bus::strobes::BusStrobes;
 use crate::endat::features::Features;
 use crate::input_filter::InputFilter;
@@ -52,13 +52,13 @@ pub struct TFormatStart {
 
 impl Default for TFormatStart {
     fn default() -> Self {
-        Self::USUAL
+        Self::DEFAULT
     }
 }
 
 impl TFormatStart {
-    /// What counts where nothing is asked for.
-    pub const USUAL: Self = Self {
+    /// Settings after reset unless others are given.
+    pub const DEFAULT: Self = Self {
         fast: false,
         reply_gap_us: 20,
         field_gap_us: 2,
@@ -108,42 +108,65 @@ pub struct AsyncDsp {
     pub encoder_data_i: Signal<In, Bit>,
     /// The last reply was good.
     pub led_o: Signal<Out, Bit>,
+    /// Strobes of the bus, in the system clock domain.
     #[start]
     strobes: BusStrobes,
+    /// Synchroniser and filter of the line.
     filter: InputFilter,
+    /// Request and reply.
     exchange: Exchange,
+    /// Fields of the reply while they come.
     #[start]
     reply: ReplyBytes,
-    moments: Moments,
+    /// Words of the results.
+    banks: ResultBanks,
+    /// Clock strap, first synchroniser stage.
     select_0: SyncReg<Bit>,
+    /// Clock strap, second synchroniser stage.
     select_1: SyncReg<Bit>,
-    // HIGH, so that a pin that is high at power-up is not an edge.
+    /// Trigger pin, first synchroniser stage; starts HIGH, so that a pin HIGH at power-up is not an edge.
     #[start(true)]
     trigger_0: SyncReg<Bit>,
+    /// Trigger pin, second synchroniser stage.
     #[start(true)]
     trigger_1: SyncReg<Bit>,
+    /// Trigger pin one cycle before `trigger_1`, to find the edge.
     #[start(true)]
     trigger_2: SyncReg<Bit>,
+    /// System clock cycles of the current microsecond, from 0.
     us_count: Reg<Bits<6>>,
+    /// High for one cycle each microsecond.
     us_tick: Reg<Bit>,
+    /// High for one cycle when a request is sent: at a rising edge of the trigger pin, or a write of address 0.
     start: Reg<Bit>,
+    /// Request ID; written with address 0.
     #[given]
     request_id: Reg<Bits<4>>,
+    /// Settings; written with address 6.
     #[given]
     settings: Reg<Bits<16>>,
+    /// EEPROM address and data; written with address 7.
     memory: Reg<Bits<16>>,
-    // Nothing to write yet.
+    /// Parity of `memory` as written; wrong while that data must not be sent.
     #[start(true)]
     memory_sum: Reg<Bit>,
+    /// High from a write of address 0 to the end of its exchange: only such a request can write to the EEPROM.
     armed: Reg<Bit>,
-    // A byte has been given that no request has written yet.
+    /// High from a write of address 7 until its data has been sent once.
     memory_is_new: Reg<Bit>,
+    /// High if the EEPROM data can be sent.
     memory_fits: Signal<Local, Bit>,
+    /// 1 if stored bits are checked against their parity.
     has_guards: Constant<Bit>,
+    /// High in the last cycle of a microsecond.
     us_last: Signal<Local, Bit>,
+    /// System clock cycles in a bit, for the clock and rate selected.
     chosen_cycles: Signal<Local, Bits<5>>,
+    /// High if no request is starting or under way: writes are taken.
     can_write: Signal<Local, Bit>,
+    /// System clock cycles in a microsecond, minus one: at 20 MHz, at 60 MHz.
     us_cycles: Vec<Constant<Bits<6>>>,
+    /// System clock cycles in a bit: slow at 20 and 60 MHz, fast at 20 and 60 MHz.
     bit_cycles: Vec<Constant<Bits<5>>>,
 }
 
@@ -155,7 +178,7 @@ impl AsyncDsp {
         Self::from_parts(AsyncDspParts {
             filter: InputFilter::new(Features::NONE),
             exchange: Exchange::new(guards),
-            moments: Moments::new(guards),
+            banks: ResultBanks::new(guards),
             has_guards: Constant::new(guards),
             request_id: Reg::new(u64::from(start.request_id).into()),
             settings: Reg::new(start.word().into()),
@@ -174,7 +197,7 @@ impl Logic for AsyncDsp {
         connect!(self.filter <= self; clock = clk_i, reset = rst_i);
         connect!(self.exchange <= self; clock = clk_i, reset = rst_i);
         connect!(self.reply <= self; clock = clk_i, reset = rst_i);
-        connect!(self.moments <= self; clock = clk_i, reset = rst_i);
+        connect!(self.banks <= self; clock = clk_i, reset = rst_i);
 
         connect!(self.strobes <= self;
             cs_n = bus_cs_n_i, rd_n = bus_rd_n_i, wr_n = bus_wr_n_i, register_at = bus_address_i,
@@ -211,13 +234,13 @@ impl Logic for AsyncDsp {
         if self.strobes.written.val() & !self.strobes.written_register.val().any() {
             self.start.d.next = true;
         }
-        // A byte is written once for each write of address 7 and one of address 0 behind it: no pin, no upset does it again.
+        // A byte is written once for each write of address 7 followed by one of address 0: neither the pin nor an upset repeats it.
         self.memory_fits.next = self.memory_is_new.q.val();
         if self.has_guards.val() {
             self.memory_fits.next = self.memory.q.val().xor() == self.memory_sum.q.val();
         }
         self.armed.d.next = self.armed.q.val() & (self.start.q.val() | self.exchange.busy.val());
-        if self.moments.published.val() & self.armed.q.val() & (self.request_id.q.val() == 6) {
+        if self.banks.published.val() & self.armed.q.val() & (self.request_id.q.val() == 6) {
             self.memory_sum.d.next = !self.memory.q.val().xor();
             self.memory_is_new.d.next = false;
         }
@@ -232,7 +255,7 @@ impl Logic for AsyncDsp {
                 }
                 7 => {
                     self.memory.d.next = self.strobes.written_data.val();
-                    // Formed before the data stood anywhere.
+                    // Formed at the pins, before the data were stored.
                     self.memory_sum.d.next = self.strobes.written_sum.val();
                     self.memory_is_new.d.next = true;
                 }
@@ -260,22 +283,22 @@ impl Logic for AsyncDsp {
         self.exchange.field_gap_us.next = self.settings.q.val().get_bits::<3>(9);
         self.exchange.level.next = self.filter.level.val();
         self.exchange.status.next = self.reply.status.val();
-        self.exchange.hold.next = self.moments.hold.val();
+        self.exchange.hold.next = self.banks.hold.val();
         connect!(self <= self.exchange; encoder_data_o = tx, encoder_data_oe = driver);
 
         self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
         FieldBitsOut::join(&mut self.exchange.field, &mut self.reply.field);
-        connect!(self.reply <= self.moments; copy, tail);
+        connect!(self.reply <= self.banks; copy, tail);
 
-        connect!(self.moments <= self.exchange; verdict = publish, good, flags, reply_id, crc);
-        connect!(self.moments <= self.reply; single_parity, multi_parity);
-        ReplyPartsOut::join(&mut self.exchange.parts, &mut self.moments.parts);
-        connect!(self.moments <= self.reply; head, second);
-        connect!(self.moments <= self.strobes; register, reading);
-        self.moments.request_id.next = self.request_id.q.val();
-        self.moments.busy.next = self.exchange.busy.val();
-        connect!(self <= self.moments; bus_data_o = word, led_o = fresh);
+        connect!(self.banks <= self.exchange; verdict = publish, good, flags, reply_id, crc);
+        connect!(self.banks <= self.reply; single_parity, multi_parity);
+        ReplyPartsOut::join(&mut self.exchange.parts, &mut self.banks.parts);
+        connect!(self.banks <= self.reply; head, second);
+        connect!(self.banks <= self.strobes; register, reading);
+        self.banks.request_id.next = self.request_id.q.val();
+        self.banks.busy.next = self.exchange.busy.val();
+        connect!(self <= self.banks; bus_data_o = word, led_o = fresh);
     }
 }

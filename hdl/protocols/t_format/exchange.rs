@@ -77,7 +77,7 @@ pub struct Exchange {
     pub status: Signal<In, Bits<8>>,
     /// What is to be sent is what was asked for; a request that does not fit is cut.
     pub request_fits: Signal<In, Bit>,
-    /// Stay with the verdict: `publish` and all that belongs to it stand still.
+    /// Stay with the verdict: `publish` and all that belongs to it do not change.
     pub hold: Signal<In, Bit>,
     /// Line to the encoder, from a register.
     pub tx: Signal<Out, Bit>,
@@ -103,69 +103,125 @@ pub struct Exchange {
     /// What replies to a request bring.
     #[bundle]
     pub parts: ReplyPartsOut,
+    /// Timing of the bits.
     #[start]
     grid: BitGrid,
+    /// Order of the fields.
     #[start]
     order: FieldOrder,
+    /// Bits of the request.
     #[start]
     bits: RequestBits,
+    /// Where the exchange is.
     phase: Reg<Phase>,
+    /// Bit of the field: 15 = start bit, 0 to 7 = data, 8 = delimiter.
     index: Reg<Bits<4>>,
+    /// Microseconds until the wait ends; counts below zero. Starts with the longest reply gap, after a reset.
     #[start(REPLY_GAP_MAX_US.into())]
     timer: Reg<Bits<7>>,
+    /// Line of the cycle before.
     previous: Reg<Bit>,
+    /// Line to the encoder; HIGH at rest.
     #[start(true)]
     line: Reg<Bit>,
+    /// High from the start of a request to its end; first of two registers that enable the driver.
     drives: Reg<Bit>,
+    /// High while the phase is one of a request; second register that enables the driver.
     enabled: Reg<Bit>,
+    /// System clock cycles until half a bit has passed since the last edge.
     run: Reg<Bits<6>>,
+    /// High from a request to its verdict.
     owed: Reg<Bit>,
+    /// Bits of the field so far, modulo 3, to find an upset of `index`.
     bits_mod_3: Reg<Bits<2>>,
-    // The line may still carry a reply: a request is refused.
+    /// High while the line can still carry a reply: requests are refused.
     #[start(true)]
     unsettled: Reg<Bit>,
+    /// Check sum of the fields so far; its bits become the CRC.
     check: Reg<Bits<8>>,
+    /// ID that the reply repeats.
     echo: Reg<Bits<4>>,
+    /// High if the request was refused.
     refused: Reg<Bit>,
+    /// High if a start bit has come since the request.
     heard: Reg<Bit>,
+    /// High if a field did not come in time, or the header was wrong.
     missed: Reg<Bit>,
+    /// High if the parity of the control field is wrong.
     bad_parity: Reg<Bit>,
+    /// High if the reply repeats another ID or EEPROM address.
     bad_echo: Reg<Bit>,
+    /// High if a delimiter was LOW.
     bad_delimiter: Reg<Bit>,
+    /// High if the CRC is wrong, or the line had a pulse shorter than half a bit.
     bad_crc: Reg<Bit>,
+    /// High if the encoder reports that its EEPROM is busy.
     memory_busy: Reg<Bit>,
+    /// High if a trigger came during an exchange, until a verdict reports it.
     overrun: Reg<Bit>,
+    /// High if an upset was found in this exchange.
     upset: Reg<Bit>,
+    /// 1 if upsets of stored bits are detected.
     has_guards: Constant<Bit>,
+    /// High while a request is sent.
     in_request: Signal<Local, Bit>,
+    /// High for one cycle at each edge of the line.
     turns: Signal<Local, Bit>,
+    /// Half a bit, in system clock cycles.
     half_bit: Signal<Local, Bits<7>>,
+    /// High if an edge of the control field now is not one of a header.
     too_soon: Signal<Local, Bit>,
+    /// Alarms of the status field; 0 after an upset.
     alarms: Signal<Local, Bits<2>>,
+    /// High while a field is sent or taken.
     in_field: Signal<Local, Bit>,
+    /// High if the exchange has come to one of its regular ends.
     is_ended: Signal<Local, Bit>,
+    /// High if an upset was found, or the verdict comes where none is due.
     is_astray: Signal<Local, Bit>,
+    /// High for one cycle at a rising edge of the line.
     rising: Signal<Local, Bit>,
+    /// High while what was noted of the last exchange is cleared.
     forget: Signal<Local, Bit>,
+    /// High if the wait has ended.
     expired: Signal<Local, Bit>,
+    /// High at the start bit.
     is_start: Signal<Local, Bit>,
+    /// High at a data bit.
     is_bit: Signal<Local, Bit>,
+    /// High in the sync code of the control field.
     in_sync: Signal<Local, Bit>,
+    /// High for one cycle when an edge of the sync code times the bits that follow.
     retimed: Signal<Local, Bit>,
+    /// High for one cycle in the middle of each bit.
     strobe: Signal<Local, Bit>,
+    /// High for one cycle when a bit of the reply is sampled.
     sampled: Signal<Local, Bit>,
+    /// High if the bit is not the one that was sent, or is expected.
     differs: Signal<Local, Bit>,
+    /// Bit on the line, in either direction.
     wire_bit: Signal<Local, Bit>,
+    /// Bit that enters the check sum.
     summed: Signal<Local, Bit>,
+    /// High if the request was refused because its ID is unknown.
     is_unknown: Signal<Local, Bit>,
+    /// High if the request was refused because the line was not at rest.
     is_not_idle: Signal<Local, Bit>,
+    /// High if no start bit came.
     is_silent: Signal<Local, Bit>,
+    /// High if start bits came, and no header.
     is_headless: Signal<Local, Bit>,
+    /// High if a field after the header is missing.
     is_short: Signal<Local, Bit>,
+    /// Time that the line must be HIGH before the next request, in microseconds.
     rest_us: Signal<Local, Bits<7>>,
+    /// Longest time that a request lasts, in microseconds.
     request_us: Signal<Local, Bits<7>>,
+    /// Raw flags of the verdict.
     raised: Signal<Local, Bits<16>>,
+    /// High if all of the reply has come as it should.
     is_whole: Signal<Local, Bit>,
+    /// High if the reply is good: complete, and without a complaint of the encoder.
     is_good: Signal<Local, Bit>,
 }
 

@@ -87,15 +87,25 @@ pub struct FieldOrder {
     /// What replies to a request bring.
     #[bundle]
     pub parts: ReplyPartsOut,
+    /// Field under way.
     kind: Reg<FieldKind>,
+    /// High if the request writes to the EEPROM.
     is_write: Signal<Local, Bit>,
+    /// High if the reply has all fields of position, kind of encoder and alarms.
     is_everything: Signal<Local, Bit>,
+    /// High if the reply has the multi-turn position only.
     is_turns: Signal<Local, Bit>,
+    /// High if the reply has the kind of encoder only.
     is_kind: Signal<Local, Bit>,
+    /// High if the request goes to the EEPROM.
     memory: Signal<Local, Bit>,
+    /// High if another field of an EEPROM request follows this one.
     is_sent: Signal<Local, Bit>,
+    /// High if the reply has a single-turn position.
     with_single: Signal<Local, Bit>,
+    /// High if the field belongs to the single-turn position.
     is_single_now: Signal<Local, Bit>,
+    /// High if the field belongs to the multi-turn position.
     is_multi_now: Signal<Local, Bit>,
 }
 

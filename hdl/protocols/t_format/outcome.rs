@@ -12,7 +12,7 @@ pub struct Outcome {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: take what stands at the inputs.
+    /// Strobe: take the inputs.
     pub publish: Signal<In, Bit>,
     /// With `publish`: the reply is good.
     pub good: Signal<In, Bit>,
@@ -28,30 +28,52 @@ pub struct Outcome {
     /// What replies to a request bring.
     #[bundle]
     pub parts: ReplyPartsIn,
-    /// What stands at the outputs of a receiver without registers.
+    /// Outputs of a receiver without registers.
     #[bundle]
     pub reading: ReadingOut,
+    /// High for one cycle when a new result can be read.
     strobe: Reg<Bit>,
+    /// High if the last reply was good.
     is_fresh: Reg<Bit>,
+    /// Number of results, wrapping.
     count: Reg<Bits<8>>,
+    /// Last good single-turn position.
     single: Reg<Bits<24>>,
+    /// High if one has come since reset.
     has_had_single: Reg<Bit>,
+    /// Last good multi-turn position.
     multi: Reg<Bits<24>>,
+    /// High if one has come since reset.
     has_had_multi: Reg<Bit>,
+    /// Kind of encoder, as it came last.
     identity: Reg<Bits<8>>,
+    /// EEPROM data as they came last.
     memory: Reg<Bits<8>>,
+    /// Alarm field as it came last.
     alarms: Reg<Bits<8>>,
+    /// Status field of the last reply.
     state: Reg<Bits<8>>,
+    /// CRC of the last reply.
     received: Reg<Bits<8>>,
+    /// ID that the last reply repeats.
     echo: Reg<Bits<4>>,
+    /// Raw flags 0 to 8 of the last exchange.
     low_flags: Reg<Bits<9>>,
+    /// Raw flag 11 of the last exchange: the EEPROM was busy.
     memory_busy: Reg<Bit>,
+    /// Raw flag 14 of the last exchange: an upset was found.
     upset: Reg<Bit>,
+    /// Raw flag 15 of the last exchange: a trigger was lost.
     overrun: Reg<Bit>,
+    /// Parity of `single` and its valid bit, as it came.
     single_sum: Reg<Bit>,
+    /// Parity of `multi` and its valid bit, as it came.
     multi_sum: Reg<Bit>,
+    /// High for one cycle when a good reply is taken.
     take: Signal<Local, Bit>,
+    /// Raw flags 12 and 13: alarms of the status field; 0 after an upset.
     alarm_flags: Signal<Local, Bits<2>>,
+    /// 1 if the parities are given to the outside.
     has_guards: Constant<Bit>,
 }
 
@@ -114,7 +136,7 @@ impl Logic for Outcome {
         self.reading.status.next = self.state.q.val();
         self.reading.crc.next = self.received.q.val();
         self.reading.reply_id.next = self.echo.q.val();
-        // Complaints and alarms stand in the status field; an alarm beside it would hide an upset.
+        // Complaints and alarms are in the status field; an alarm reported with an upset would hide it.
         self.alarm_flags.next = self.state.q.val().get_bits::<2>(4);
         if self.upset.q.val() {
             self.alarm_flags.next = 0.into();

@@ -63,7 +63,7 @@ pub struct TFormatPort {
     /// It was the host's.
     pub over_request: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
-    pub displaced: Signal<Out, Bit>,
+    pub trigger_lost: Signal<Out, Bit>,
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
@@ -79,60 +79,108 @@ pub struct TFormatPort {
     pub host_half: Signal<In, Bit>,
     /// What to write.
     pub host_data: Signal<In, Bits<16>>,
+    /// Synchroniser and filter of the line.
     filter: InputFilter,
+    /// Request and reply.
     exchange: Exchange,
+    /// Fields of the reply while they come.
     #[start]
     reply: Reply,
+    /// Cause of the result.
     #[start]
     primary: LowestCause,
+    /// Result registers.
     snapshot: Snapshot,
+    /// Microseconds of rest after an exchange, before the next one.
     rest: Reg<Bits<2>>,
+    /// High from the start bit of a request to the end of the exchange.
     started: Reg<Bit>,
+    /// High if a trigger was lost, until the result of a trigger reports it.
     lost: Reg<Bit>,
-    // `displaced`.
+    /// High in the cycle after a trigger was lost.
     is_lost: Reg<Bit>,
+    /// High if the exchange under way is the host's.
     own: Reg<Bit>,
+    /// Second copy of `own`, compared with it as a guard.
     own_too: Reg<Bit>,
+    /// High from a write of the high half of the word `send`, if it was accepted, to that of the low half.
     armed: Reg<Bit>,
+    /// High from the host's request until its exchange begins.
     pending: Reg<Bit>,
+    /// Request ID of the host's request.
     send_id: Reg<Bits<4>>,
+    /// EEPROM address of the host's request.
     send_address: Reg<Bits<7>>,
+    /// EEPROM data of the host's request.
     send_data: Reg<Bits<8>>,
-    // Nothing to send yet.
+    /// Parity of the host's request as written; wrong after it was sent and before one is written.
     #[start(true)]
     send_sum: Reg<Bit>,
+    /// EEPROM data as they came last.
     memory: Reg<Bits<8>>,
+    /// ID that the reply to the host's request repeated.
     echo: Reg<Bits<4>>,
+    /// Cause of the host's exchange; 0 = good.
     own_cause: Reg<Bits<4>>,
+    /// High if the host's exchange has ended; cleared by the next request.
     done: Reg<Bit>,
+    /// Status field of the last reply.
     status: Reg<Bits<8>>,
+    /// Kind of encoder, as it came last.
     identity: Reg<Bits<8>>,
+    /// Alarm field as it came last.
     alarms: Reg<Bits<8>>,
+    /// CRC of the last reply.
     crc: Reg<Bits<8>>,
+    /// High if the position has a single-turn part.
     has_had_single: Reg<Bit>,
+    /// High if the position has a multi-turn part.
     has_had_multi: Reg<Bit>,
+    /// Word that the host reads, as of the strobe of its read.
     shown: Reg<Bits<32>>,
+    /// 1 if upsets of stored bits are detected.
     has_guards: Constant<Bit>,
+    /// High while an exchange is under way, or the rest after it.
     is_busy: Signal<Local, Bit>,
+    /// High if the exchange is the host's: both copies say so.
     is_own: Signal<Local, Bit>,
+    /// High if the two copies differ: an upset.
     is_torn: Signal<Local, Bit>,
+    /// Parity of the host's request as it is stored now.
     send_sum_now: Signal<Local, Bit>,
+    /// High if the host's request is still as it was written.
     send_fits: Signal<Local, Bit>,
+    /// High if the positions have their parity, and it is known whose exchange this is.
     reply_fits: Signal<Local, Bit>,
+    /// High if the reply is good.
     good: Signal<Local, Bit>,
+    /// High while a request of the host waits or is under way.
     own_busy: Signal<Local, Bit>,
+    /// High for one cycle when the host's exchange begins.
     own_start: Signal<Local, Bit>,
+    /// High if the exchange that begins or is under way is the host's.
     own_now: Signal<Local, Bit>,
+    /// High for one cycle when an exchange begins.
     begins: Signal<Local, Bit>,
+    /// High for one cycle when the host writes the word `send`.
     sends: Signal<Local, Bit>,
+    /// High for one cycle when a result brings a good position.
     takes: Signal<Local, Bit>,
+    /// High if the result of this exchange reports a lost trigger.
     overrun: Signal<Local, Bit>,
+    /// High for one cycle when a trigger is lost.
     loses: Signal<Local, Bit>,
+    /// Raw flags of the exchange, with an upset of what is stored.
     sum_flags: Signal<Local, Bits<16>>,
+    /// Raw flags of the result.
     flags_in: Signal<Local, Bits<16>>,
+    /// Primary cause of the result.
     code: Signal<Local, Bits<5>>,
+    /// Single-turn part of the position: from the reply, or as it was.
     single: Signal<Local, Bits<24>>,
+    /// Multi-turn part of the position: from the reply, or as it was.
     multi: Signal<Local, Bits<24>>,
+    /// Word that the host's address selects.
     chosen: Signal<Local, Bits<32>>,
 }
 
@@ -273,16 +321,16 @@ impl Logic for TFormatPort {
         FieldBitsOut::join(&mut self.exchange.field, &mut self.reply.field);
     }
 
-    /// What the reply is worth.
+    /// Checks of the reply.
     fn judge(&mut self) {
-        // A trigger that was not taken is told by the result of the exchange under way, or of the next one.
+        // The result of the exchange under way, or of the next one, reports a trigger that was not taken.
         self.overrun.next = self.lost.q.val() & !self.is_own.val();
         if self.exchange.publish.val() & !self.is_own.val() {
             self.lost.d.next = false;
         }
         self.loses.next = self.trigger.val() & self.is_busy.val();
         self.is_lost.d.next = self.loses.val();
-        self.displaced.next = self.is_lost.q.val();
+        self.trigger_lost.next = self.is_lost.q.val();
         if self.loses.val() {
             self.lost.d.next = true;
         }
@@ -303,11 +351,11 @@ impl Logic for TFormatPort {
         self.good.next = self.exchange.good.val() & self.reply_fits.val();
         self.sum_flags.next = bit_cast::<16, 15>(self.exchange.flags.val().get_bits::<15>(0));
         if !self.reply_fits.val() {
-            // An alarm beside it would hide the upset.
+            // An alarm reported with an upset would hide it.
             self.sum_flags.next =
                 bit_cast::<16, 12>(self.exchange.flags.val().get_bits::<12>(0)) | 0x4000;
         }
-        // What else went wrong explains it.
+        // Any other fault explains the wrong parity.
         if self.exchange.flags.val().get_bits::<12>(0).any() {
             self.sum_flags.next =
                 bit_cast::<16, 15>(self.exchange.flags.val().get_bits::<15>(0) & 0x3FFF);
@@ -415,7 +463,7 @@ impl Logic for TFormatPort {
             }
             _ => {}
         }
-        // A word is one moment, however slowly its bytes are fetched.
+        // The word is latched, because its bytes are fetched one after the other.
         if self.host_read.val() {
             self.shown.d.next = self.chosen.val();
         }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! FieldOrder --FieldBits, ReplyParts--> Exchange --FieldBits--> Reply, ReplyBytes
-//!                                                --ReplyParts--> Outcome, Moments
+//!                                                --ReplyParts--> Outcome, ResultBanks
 //! Reply --Fields--> Outcome --Reading--> TFormatChannel
 //! ```
 
@@ -58,12 +58,12 @@ pub struct Fields {
     pub alarm: Bits<8>,
 }
 
-/// What stands at the outputs of a receiver without registers.
+/// Outputs of a receiver without registers.
 #[ports]
 pub struct Reading {
     /// A new result can be read from this cycle on.
     pub result_strobe: Bit,
-    /// The last reply was good; low = what stands here is of an earlier one.
+    /// The last reply was good; low = the values are of an earlier one.
     pub fresh: Bit,
     /// Number of results, wrapping.
     pub sequence: Bits<8>,
@@ -71,7 +71,7 @@ pub struct Reading {
     pub single_turn: Bits<24>,
     /// There is one.
     pub single_valid: Bit,
-    /// Parity of `single_turn` as it came, and of `single_valid`; whoever shows them compares.
+    /// Parity of `single_turn` as it came, and of `single_valid`; compared where they are shown.
     pub single_parity: Bit,
     /// Last good multi-turn position.
     pub multi_turn: Bits<24>,

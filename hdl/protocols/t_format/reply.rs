@@ -25,12 +25,19 @@ pub struct Reply {
     /// What a reply has brought, field by field.
     #[bundle]
     pub fields: FieldsOut,
+    /// Status field so far; bits enter at the top.
     status_bits: Reg<Bits<8>>,
+    /// Single-turn position so far; bits enter at the top.
     single_bits: Reg<Bits<24>>,
+    /// Multi-turn position so far; bits enter at the top.
     multi_bits: Reg<Bits<24>>,
+    /// Kind of encoder, or EEPROM data, so far; bits enter at the top.
     byte_bits: Reg<Bits<8>>,
+    /// Alarm field so far; bits enter at the top.
     alarm_bits: Reg<Bits<8>>,
+    /// Parity of the single-turn bits, formed as they came; cleared between exchanges.
     single_sum: Reg<Bit>,
+    /// Parity of the multi-turn bits, formed as they came; cleared between exchanges.
     multi_sum: Reg<Bit>,
 }
 

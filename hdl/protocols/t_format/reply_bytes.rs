@@ -30,26 +30,35 @@ pub struct ReplyBytes {
     pub field: FieldBitsIn,
     /// All fields move on by a byte.
     pub copy: Signal<In, Bit>,
-    /// What comes behind the last of them.
+    /// Byte that enters after the last of them.
     pub tail: Signal<In, Bits<8>>,
     /// The first byte: the low one of the single-turn position, before they move.
     pub head: Signal<Out, Bits<8>>,
-    /// The byte behind it.
+    /// The byte following it.
     pub second: Signal<Out, Bits<8>>,
-    /// Status field, of which bits 7 to 4 are there only; stands still while bytes move.
+    /// Bits 7 to 4 of the status field; constant while bytes move.
     pub status: Signal<Out, Bits<8>>,
     /// Parity of the bits of the single-turn position that have come.
     pub single_parity: Signal<Out, Bit>,
     /// Parity of the bits of the multi-turn position that have come.
     pub multi_parity: Signal<Out, Bit>,
+    /// Status field so far; passes bytes on while they are fetched.
     status_bits: Reg<Bits<8>>,
+    /// Single-turn position so far; its low byte is fetched first.
     single_bits: Reg<Bits<24>>,
+    /// Multi-turn position so far; passes bytes on while they are fetched.
     multi_bits: Reg<Bits<24>>,
+    /// Kind of encoder, or EEPROM data, so far; passes bytes on while they are fetched.
     byte_bits: Reg<Bits<8>>,
+    /// Alarm field so far; passes bytes on while they are fetched.
     alarm_bits: Reg<Bits<8>>,
+    /// Bits 7 to 4 of the status field, kept while bytes are fetched.
     judged: Reg<Bits<4>>,
+    /// Parity of the single-turn bits, formed as they came; cleared between exchanges.
     single_sum: Reg<Bit>,
+    /// Parity of the multi-turn bits, formed as they came; cleared between exchanges.
     multi_sum: Reg<Bit>,
+    /// High between exchanges, and in a reset.
     forget: Signal<Local, Bit>,
 }
 

@@ -24,8 +24,11 @@ pub struct RequestBits {
     pub is_crc: Signal<In, Bit>,
     /// The bit.
     pub bit_out: Signal<Out, Bit>,
+    /// Parity of the request ID.
     parity: Signal<Local, Bit>,
+    /// Control field: sync code, ID and parity.
     control_byte: Signal<Local, Bits<8>>,
+    /// Address field.
     address_byte: Signal<Local, Bits<8>>,
 }
 

@@ -1,4 +1,4 @@
-//! Verdict bytes: what is told about a reply, as the bytes that the processor reads.
+//! Verdict bytes: the checks of a reply as the bytes that the processor reads.
 
 use crate::lowest_cause::LowestCause;
 use rtl_design::{kernel, Block};
@@ -20,11 +20,15 @@ pub struct VerdictBytes {
     /// High byte of address 6.
     pub communication: Signal<Out, Bits<8>>,
     /// High byte of address 7, without busy.
-    pub told: Signal<Out, Bits<8>>,
+    pub cause_byte: Signal<Out, Bits<8>>,
+    /// Cause of the flags.
     #[start]
     primary: LowestCause,
+    /// High if the encoder reports an error of the request.
     complains: Signal<Local, Bit>,
+    /// High if the reply repeats the ID of the request.
     repeats: Signal<Local, Bit>,
+    /// Communication alarm: the high byte of address 6.
     alarms: Signal<Local, Bits<8>>,
 }
 
@@ -46,7 +50,7 @@ impl Logic for VerdictBytes {
             | (bit_cast::<8, 1>(self.repeats.val().into()) << 4)
             | (bit_cast::<8, 1>(self.alarms.val().any().into()) << 5)
             | (bit_cast::<8, 1>(self.good.val().into()) << 7);
-        self.told.next = bit_cast::<8, 4>(self.primary.cause.val().get_bits::<4>(0))
+        self.cause_byte.next = bit_cast::<8, 4>(self.primary.cause.val().get_bits::<4>(0))
             | (bit_cast::<8, 2>(self.valid.val()) << 4)
             | (bit_cast::<8, 1>(self.flags.val().get_bits::<1>(15)) << 6);
     }

@@ -167,7 +167,7 @@ fn a_held_position_or_time_stamp_that_is_upset_is_told_and_the_next_frame_is_goo
 fn a_time_stamp_that_is_upset_before_its_position_comes_is_told() {
     let mut rig = open_rig();
     let ready = rig.engine().clone();
-    let (net, width) = register(&ready, "snapshot.moment");
+    let (net, width) = register(&ready, "snapshot.stamp_pending");
     let mut rig = Setup::card().on(ready.clone());
     let begin = rig.cycle();
     let whole = good_frame(&mut rig);

@@ -118,7 +118,7 @@ impl Life {
         let design = elaborate(&self.block(), "encoder_port").unwrap();
         let mut kernel = kernel_engine!(self.block(); clock;
             in reset, tick_us, timestamp, trigger, calibrate, request_id, field_gap_us;
-            out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, displaced, reply, calibrated, alarm;
+            out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, trigger_lost, reply, calibrated, alarm;
             bundles line, settings, window, result, end, record);
         let stimulus = self.recorded(&design);
         let seen = three_way(self.name, &mut kernel, &design, &stimulus).unwrap();

@@ -109,7 +109,7 @@ fn agree(name: &str, frames: &Frames, sequence_min: u128) {
     let design = elaborate(&block(&frames.asked), "encoder_port").unwrap();
     let mut kernel = kernel_engine!(block(&frames.asked); clock;
         in reset, tick_us, timestamp, trigger, calibrate, request_id, field_gap_us;
-        out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, displaced, reply, calibrated, alarm;
+        out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, trigger_lost, reply, calibrated, alarm;
         bundles line, settings, window, result, end, record);
     let seen = three_way(name, &mut kernel, &design, &recorded(frames)).unwrap();
     assert!(*seen.output("sequence").last().unwrap() > sequence_min);

@@ -104,7 +104,7 @@ fn recorded(system_mhz: u64, rounds: usize) -> Stimulus {
 fn kernels() -> KernelEngine<EncoderPort> {
     kernel_engine!(block(); clock;
         in reset, tick_us, timestamp, trigger, calibrate, request_id, field_gap_us;
-        out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, displaced, reply, calibrated, alarm;
+        out recovery_cycles, delay_cycles, busy, sample_strobe, request_runs, line_high, trigger_lost, reply, calibrated, alarm;
         bundles line, settings, window, result, end, record)
 }
 

@@ -270,11 +270,11 @@ fn a_trigger_within_frame_or_recovery_is_lost_and_told_once() {
     rig.bits = bits(0x123, 12);
     rig.trigger();
     rig.steps(50);
-    assert!(!rig.uut.displaced.val());
+    assert!(!rig.uut.trigger_lost.val());
     rig.trigger();
-    assert!(rig.uut.displaced.val());
+    assert!(rig.uut.trigger_lost.val());
     rig.steps(1);
-    assert!(!rig.uut.displaced.val(), "a strobe");
+    assert!(!rig.uut.trigger_lost.val(), "a strobe");
     rig.steps(3_000);
     assert_eq!(rig.uut.result.cause.val().to_u64(), cause::TRIGGER_OVERRUN);
     assert!(rig.is_fresh(), "its position is good");

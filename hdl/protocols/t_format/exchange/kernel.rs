@@ -15,10 +15,10 @@ impl Logic for Exchange {
         self.go_on();
         self.guard_request();
         self.judge();
-        self.tell();
+        self.report();
     }
 
-    /// What was noted of an exchange goes when its result has been published.
+    /// Notes of an exchange are cleared when its result has been published.
     fn forget_last(&mut self) {
         self.forget.next = self.reset.val() | (self.phase.q.val() == Phase::Rest);
         self.grid.reset.next = self.reset.val();
@@ -340,7 +340,7 @@ impl Logic for Exchange {
         }
     }
 
-    /// What became of it.
+    /// The verdict's flags.
     fn judge(&mut self) {
         self.is_unknown.next = self.refused.q.val() & !self.order.is_known.val();
         self.is_not_idle.next = self.refused.q.val() & self.order.is_known.val();
@@ -360,7 +360,7 @@ impl Logic for Exchange {
                 & !self.index.q.val().get_bit(2)
                 & (self.echo.q.val() == self.request_id.val()));
         self.is_astray.next = self.has_guards.val() & (self.upset.q.val() | !self.is_ended.val());
-        // An alarm beside it would hide the upset.
+        // An alarm reported with an upset would hide it.
         self.alarms.next = self.status.val().get_bits::<2>(4);
         if self.is_astray.val() {
             self.alarms.next = 0.into();
@@ -383,8 +383,8 @@ impl Logic for Exchange {
         self.is_good.next = self.is_whole.val() & !self.raised.val().get_bits::<3>(9).any();
     }
 
-    /// What is told of it.
-    fn tell(&mut self) {
+    /// Outputs of the verdict.
+    fn report(&mut self) {
         self.flags.next = self.raised.val();
         self.good.next = self.is_good.val();
         self.reply_id.next = self.echo.q.val();

@@ -196,11 +196,11 @@ fn a_trigger_that_is_not_taken_is_told_by_the_next_result() {
     let mut rig = Rig::new();
     rig.send(2, 0, 0);
     rig.us(2);
-    assert!(!rig.uut.displaced.val());
+    assert!(!rig.uut.trigger_lost.val());
     rig.trigger();
-    assert!(rig.uut.displaced.val());
+    assert!(rig.uut.trigger_lost.val());
     rig.us(60);
-    assert!(!rig.uut.displaced.val(), "a strobe");
+    assert!(!rig.uut.trigger_lost.val(), "a strobe");
     assert_eq!(rig.result().0, 0);
     assert_eq!(rig.answer().0, cause::NO_ANSWER);
     rig.trigger();

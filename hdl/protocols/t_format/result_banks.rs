@@ -1,17 +1,17 @@
-//! Moments: results as the words that the processor reads, in RAM, of which one moment is held while others come.
+//! Result banks: results as the words that the processor reads, in RAM; one of them is held while others come.
 //!
 //! ```text
-//! verdict -> step 3, 4, .. 15, 0, 1, 2 -> byte = head, or what stood there -> RAM, bank `free`
+//! verdict -> step 3, 4, .. 15, 0, 1, 2 -> byte = head, or the one before -> RAM, bank `free`
 //!                                   \--> free becomes latest
 //! address 0 is read: latest becomes held
 //! ```
 //!
 //! A byte of step n is the low (n even) or high (n odd) one of word n / 2. Of the four banks three are in use: `held`, which the processor
 //! reads, `latest`, and `free`, which the next result is written to as a whole: what a reply does not bring is copied from `latest`, out of a
-//! second RAM that has nothing else to do. So a result changes at once, and a moment stands as long as the processor likes.
+//! second RAM that has nothing else to do. So a result changes at once, and is held as long as the processor needs it.
 //! <!-- with has_guards -->
 //!
-//! The parity of the positions, formed of the bits as they came, is compared when the moment is taken, in the clocks in which the
+//! The parity of the positions, formed of the bits as they came, is compared when the processor takes a result, in the clocks in which the
 //! processor still reads address 0, whose word is in no RAM: then words 1 to 4 are read.
 //! <!-- end -->
 
@@ -24,13 +24,13 @@ use rust_hdl::prelude::*;
 
 /// Words of results.
 #[derive(LogicBlock, Block)]
-#[properties("../../properties/moments.sv")]
-pub struct Moments {
+#[properties("../../properties/result_banks.sv")]
+pub struct ResultBanks {
     /// System clock.
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// An exchange has ended; what follows belongs to it, and stands still as long as `hold`.
+    /// An exchange has ended; what follows belongs to it, and does not change while `hold` is high.
     pub verdict: Signal<In, Bit>,
     /// Not all of it has been taken yet.
     pub hold: Signal<Out, Bit>,
@@ -51,11 +51,11 @@ pub struct Moments {
     pub parts: ReplyPartsIn,
     /// Next byte of the reply, see [`super::reply_bytes`].
     pub head: Signal<In, Bits<8>>,
-    /// The one behind it.
+    /// The one following it.
     pub second: Signal<In, Bits<8>>,
     /// Strobe: the bytes of the reply move on.
     pub copy: Signal<Out, Bit>,
-    /// What comes behind them.
+    /// Byte that follows them.
     pub tail: Signal<Out, Bits<8>>,
     /// Strobe: a new result can be read from the next cycle on.
     pub published: Signal<Out, Bit>,
@@ -69,8 +69,9 @@ pub struct Moments {
     pub request_id: Signal<In, Bits<4>>,
     /// An exchange is under way, bit 15 of address 7.
     pub busy: Signal<In, Bit>,
-    /// The word, two clocks behind `register`.
+    /// The word, two clocks after `register`.
     pub word: Signal<Out, Bits<16>>,
+    /// Bytes that say how good the reply was.
     #[start]
     verdict_bytes: VerdictBytes,
     /// Low bytes of the words.
@@ -82,67 +83,106 @@ pub struct Moments {
     /// The same bytes, for what a reply does not bring.
     #[start]
     known: Memory<8, 6>,
+    /// Byte of the result that is stored next; 3 at rest, then up to 15 and from 0 to 2.
     #[start(3.into())]
     step: Reg<Bits<4>>,
-    // After a reset a bank is filled with zeros; with guards in two registers, so that no upset does it.
+    /// High after a reset until a bank is filled with zeros.
     #[start(true)]
     clearing: Reg<Bit>,
+    /// Complement of `clearing`, so that no single upset starts the filling.
     cleared: Reg<Bit>,
+    /// Bank that the next result is stored in.
     #[start(1.into())]
     free: Reg<Bits<2>>,
+    /// Bank of the latest result.
     #[start(1.into())]
     latest: Reg<Bits<2>>,
+    /// Bank that the processor reads.
     held: Reg<Bits<2>>,
-    // Parities: a bank that nobody has chosen shows itself.
+    /// Parity of `latest`, to find an upset of it.
     #[start(true)]
     latest_sum: Reg<Bit>,
+    /// Parity of `held`, to find an upset of it.
     held_sum: Reg<Bit>,
+    /// High if the last reply was good.
     is_fresh: Reg<Bit>,
+    /// High if a good single-turn position has come since reset.
     had_single: Reg<Bit>,
+    /// High if a good multi-turn position has come since reset.
     had_multi: Reg<Bit>,
+    /// Parity of the last good single-turn position, as it came.
     single_sum: Reg<Bit>,
+    /// Parity of the last good multi-turn position, as it came.
     multi_sum: Reg<Bit>,
+    /// `is_first` of the cycle before.
     was_first: Reg<Bit>,
+    /// Word whose parity is added, 1 to 4, after address 0 was read; 0 at rest.
     scan: Reg<Bits<3>>,
+    /// `scan` of the cycle before.
     scanned: Reg<Bits<3>>,
+    /// Parity of the words read so far, with those of the positions: 1 at the end is an upset.
     differs: Reg<Bit>,
+    /// Address of the word at the RAM's output.
     shown: Reg<Bits<3>>,
+    /// Word that the processor reads.
     out_data: Reg<Bits<16>>,
+    /// High while a bank is filled with zeros.
     clears: Signal<Local, Bit>,
+    /// High while a byte is stored.
     copies: Signal<Local, Bit>,
+    /// High at the last byte of a result.
     is_last: Signal<Local, Bit>,
+    /// High for one cycle when the last byte is stored.
     ends: Signal<Local, Bit>,
+    /// High if the reply brings a good single-turn position.
     takes_single: Signal<Local, Bit>,
+    /// High if the reply brings a good multi-turn position.
     takes_multi: Signal<Local, Bit>,
+    /// High if the reply brings the byte of this step; else it is copied from the latest result.
     brings: Signal<Local, Bit>,
+    /// Step of the next cycle.
     next_step: Signal<Local, Bits<4>>,
+    /// Byte that is stored.
     byte: Signal<Local, Bits<8>>,
+    /// High if the byte is written to the RAM that the processor reads.
     writes: Signal<Local, Bit>,
+    /// Bank after the latest one.
     after_latest: Signal<Local, Bits<2>>,
+    /// Bank that is neither the latest nor the held one.
     next_free: Signal<Local, Bits<2>>,
+    /// High while the processor reads address 0.
     is_first: Signal<Local, Bit>,
+    /// High for one cycle when the processor takes the latest result.
     takes: Signal<Local, Bit>,
+    /// Address of the word that is read from RAM.
     place: Signal<Local, Bits<3>>,
+    /// Parity of the position bits in the word at the RAM's output.
     part: Signal<Local, Bit>,
+    /// High if the held bank is the one that was chosen, and its positions have their parity.
     fits: Signal<Local, Bit>,
+    /// Cause in the word of address 7.
     cause: Signal<Local, Bits<4>>,
-    is_told: Signal<Local, Bit>,
+    /// High if that cause explains a bad result: no upset is shown in its place.
+    is_explained: Signal<Local, Bit>,
+    /// High byte of the word at the RAM's output.
     high_byte: Signal<Local, Bits<8>>,
+    /// Low byte of the word at the RAM's output.
     low_byte: Signal<Local, Bits<8>>,
+    /// 1 if upsets of stored bits are detected.
     has_guards: Constant<Bit>,
 }
 
-impl Moments {
-    /// Moments; `guards` look for upsets of what is stored.
+impl ResultBanks {
+    /// Banks; `guards` look for upsets of what is stored.
     pub fn new(guards: bool) -> Self {
-        Self::from_parts(MomentsParts {
+        Self::from_parts(ResultBanksParts {
             has_guards: Constant::new(guards),
         })
     }
 }
 
 #[kernel]
-impl Logic for Moments {
+impl Logic for ResultBanks {
     fn update(&mut self) {
         clock!(self, clock, low, high, known);
 
@@ -160,7 +200,7 @@ impl Logic for Moments {
         self.hold.next = !self.is_last.val() | self.clears.val();
         self.published.next = self.ends.val() & !self.clears.val();
 
-        // What is told about the reply comes behind its fields. EEPROM data, too, which are the same field as the kind of encoder.
+        // The bytes of the verdict follow the fields of the reply. So do EEPROM data, which are the same field as the kind of encoder.
         self.takes_single.next = self.good.val() & self.parts.has_single.val();
         self.takes_multi.next = self.good.val() & self.parts.has_multi.val();
         connect!(self.verdict_bytes <= self; good, flags, reply_id);
@@ -175,7 +215,7 @@ impl Logic for Moments {
                 self.tail.next = self.second.val();
             }
             if self.step.q.val().get_bit(1) {
-                self.tail.next = self.verdict_bytes.told.val();
+                self.tail.next = self.verdict_bytes.cause_byte.val();
             }
         }
         if self.step.q.val().get_bit(3) {
@@ -234,7 +274,7 @@ impl Logic for Moments {
             | (bit_cast::<5, 2>(self.free.q.val()) << 3);
         self.high.write_data.next = self.byte.val();
 
-        // The next one, or the one behind it.
+        // The next bank, or the one after it.
         self.after_latest.next = self.latest.q.val() + 1;
         self.next_free.next = self.after_latest.val();
         if self.after_latest.val() == self.held.q.val() {
@@ -262,7 +302,7 @@ impl Logic for Moments {
         }
         self.fresh.next = self.is_fresh.q.val();
 
-        // The moment that is read.
+        // The result that is read.
         self.is_first.next = self.reading.val() & !self.register.val().any();
         self.was_first.d.next = self.is_first.val();
         self.takes.next = self.is_first.val() & !self.was_first.q.val();
@@ -304,8 +344,8 @@ impl Logic for Moments {
         self.out_data.d.next =
             bit_cast::<16, 8>(self.low_byte.val()) | (bit_cast::<16, 8>(self.high_byte.val()) << 8);
         self.cause.next = self.high_byte.val().get_bits::<4>(0);
-        // Causes 1 to 12 explain it; an alarm beside it would hide the upset.
-        self.is_told.next = self.cause.val().any()
+        // Causes 1 to 12 explain it; an alarm reported with an upset would hide it.
+        self.is_explained.next = self.cause.val().any()
             & !(self.cause.val().get_bits::<2>(2).all() & self.cause.val().get_bits::<2>(0).any());
         match self.shown.q.val().index() {
             0 => {
@@ -327,7 +367,7 @@ impl Logic for Moments {
                         | (bit_cast::<16, 4>(self.cause.val()) << 8)
                         | (bit_cast::<16, 1>(self.high_byte.val().get_bits::<1>(6)) << 14)
                         | (bit_cast::<16, 1>(self.busy.val().into()) << 15);
-                    if !self.is_told.val() {
+                    if !self.is_explained.val() {
                         self.out_data.d.next = bit_cast::<16, 8>(self.low_byte.val())
                             | 0x0F00
                             | (bit_cast::<16, 1>(self.high_byte.val().get_bits::<1>(6)) << 14)
