@@ -1,17 +1,17 @@
 //! What the printers of a [`Design`](crate::elaborate::Design) share: the head of a file, names, numbers, and what stands where in a module.
 
+mod clocked;
 mod header;
 mod names;
 mod order;
 mod row;
 mod scope;
 
+pub(crate) use clocked::Clocked;
 pub use header::Header;
 pub(crate) use names::{variant_name, Names};
 use order::used_parameters;
-pub(crate) use order::{
-    constant_values, direct_next, processes, reads_and_targets, register_groups, DirectNext,
-};
+pub(crate) use order::{constant_values, reads_and_targets, register_groups};
 pub(crate) use row::{is_row, parts, Part};
 pub(crate) use scope::Scope;
 

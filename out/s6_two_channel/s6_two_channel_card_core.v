@@ -497,6 +497,7 @@ module s6_two_channel_card_core (
             led_status_o = now[22];
         end
     end
+
     assign new_set = taken_2;
     assign registers_0_new_set = new_set;
     assign registers_1_new_set = new_set;

@@ -165,9 +165,7 @@ module s6_two_channel_channel (
     wire         wanted_shape_has_f2;
     reg          clk_pin; initial clk_pin = 1'b1;
     reg          data_pin; initial data_pin = 1'b0;
-    reg          data_pin_next;
     reg          oe_pin; initial oe_pin = 1'b0;
-    reg          oe_pin_next;
     wire         _unused_ok = &{1'b0, displaced, transaction_is_at_rest, shape_is_position, wanted_shape_has_f2};
 
     s6_two_channel_input_filter u_filter (
@@ -361,6 +359,7 @@ module s6_two_channel_channel (
             period = CALIBRATION_PERIOD_CYCLES;
         end
     end
+
     assign filter_set = filter_cycles;
     assign window_set = start_window_cycles;
     // Which command the next frame has is settled before it begins, and stays until all has been told of it.
@@ -380,10 +379,6 @@ module s6_two_channel_channel (
         transaction_crc_ok = receiver_crc_ok;
     end
 
-    always @* begin
-        data_pin_next = sender_data;
-        oe_pin_next = sender_oe;
-    end
     assign endat_clk = clk_pin;
     assign data_o = data_pin;
     assign data_oe = oe_pin;
@@ -396,8 +391,8 @@ module s6_two_channel_channel (
         end else begin
             // The line, from registers.
             clk_pin <= clock_gen_endat_clk;
-            data_pin <= data_pin_next;
-            oe_pin <= oe_pin_next;
+            data_pin <= sender_data;
+            oe_pin <= sender_oe;
         end
     end
 

@@ -120,54 +120,37 @@ module s6_two_channel_channel_registers (
     wire  [31:0] shown_4;
     wire  [31:0] shown_5;
     reg          waiting; initial waiting = 1'b0;
-    reg          waiting_next;
     reg          behind; initial behind = 1'b0;
     reg          stale; initial stale = 1'b0;
     reg          stale_shown; initial stale_shown = 1'b0;
-    reg          stale_shown_next;
     reg   [15:0] age; initial age = 16'd0;
     reg   [15:0] age_shown; initial age_shown = 16'd0;
-    reg   [15:0] age_shown_next;
     reg   [31:0] held_0; initial held_0 = 32'd0;
-    reg   [31:0] held_0_next;
     reg   [31:0] held_1; initial held_1 = 32'd0;
-    reg   [31:0] held_1_next;
     reg   [31:0] held_2; initial held_2 = 32'd0;
-    reg   [31:0] held_2_next;
     reg   [31:0] held_3; initial held_3 = 32'd0;
-    reg   [31:0] held_3_next;
     reg   [31:0] held_4; initial held_4 = 32'd0;
-    reg   [31:0] held_4_next;
     reg   [31:0] held_5; initial held_5 = 32'd0;
-    reg   [31:0] held_5_next;
     reg    [7:0] byte_0; initial byte_0 = 8'd0;
-    reg    [7:0] byte_0_next;
     wire         byte_0_reset;
     reg    [7:0] byte_1; initial byte_1 = 8'd0;
-    reg    [7:0] byte_1_next;
     wire         byte_1_reset;
     reg    [7:0] byte_2; initial byte_2 = 8'd0;
-    reg    [7:0] byte_2_next;
     wire         byte_2_reset;
     reg    [7:0] byte_3; initial byte_3 = 8'd0;
-    reg    [7:0] byte_3_next;
     wire         byte_3_reset;
     reg    [7:0] byte_4; initial byte_4 = 8'd0;
-    reg    [7:0] byte_4_next;
     wire         byte_4_reset;
     reg    [7:0] byte_5; initial byte_5 = 8'd0;
-    reg    [7:0] byte_5_next;
     wire         byte_5_reset;
     reg    [7:0] read_byte; initial read_byte = 8'd0;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
     reg   [31:0] config0; initial config0 = 32'h381d0020;
-    reg   [31:0] config0_next;
     reg   [31:0] config1; initial config1 = 32'h20800b8;
-    reg   [31:0] config1_next;
     reg   [31:0] config2; initial config2 = 32'hc501012;
-    reg   [31:0] config2_next;
+    wire         _unused_ok = &{1'b0, config0[15:11], config0[23:22], config0[31:30], config1[15:11], config1[23:22], config1[31:28], config2[15:12], config2[31:29]};
 
     s6_two_channel_config_ring_2 u_ring (
         .clock(clock),
@@ -180,28 +163,6 @@ module s6_two_channel_channel_registers (
         .word2(ring_word2)
     );
 
-    always @* begin
-        waiting_next = waiting;
-        // A trigger that the channel does not take gives no result of its own.
-        if (result_strobe) begin
-            waiting_next = 1'b0;
-        end
-        if (new_set) begin
-            waiting_next = trigger & !busy;
-        end
-    end
-
-    always @* begin
-        config0_next = config0;
-        config1_next = config1;
-        config2_next = config2;
-        // Not in the cycle of a trigger either: its frame has what was looked at when it was taken.
-        if (ring_home & !busy & !trigger) begin
-            config0_next = ring_word0;
-            config1_next = ring_word1;
-            config2_next = ring_word2;
-        end
-    end
     assign taken = trigger & !busy;
     assign owes = waiting & !result_strobe;
     assign brought = waiting & result_strobe;
@@ -218,16 +179,8 @@ module s6_two_channel_channel_registers (
             age_tick = 1'b0;
         end
     end
-    assign age_now = age_base + {15'd0, age_tick};
 
-    always @* begin
-        stale_shown_next = stale_shown;
-        age_shown_next = age_shown;
-        if (show) begin
-            stale_shown_next = stale_now;
-            age_shown_next = age_now;
-        end
-    end
+    assign age_now = age_base + {15'd0, age_tick};
     assign word_0 = {flags[19:12], fresh, position_valid, 1'b0, cause, sequence_value};
     assign word_1 = position[31:0];
     // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
@@ -235,156 +188,12 @@ module s6_two_channel_channel_registers (
     assign word_3 = first_fall_timestamp;
     assign word_4 = {flags[11:0], delay_cycles[9:0], crc_computed, crc_received};
     assign word_5 = {2'd0, delay_cycles[10], recovery_cycles, 16'd0};
-
-    always @* begin
-        held_0_next = held_0;
-        if (load) begin
-            held_0_next = word_0;
-        end
-    end
     assign shown_0 = held_0;
-
-    always @* begin
-        held_1_next = held_1;
-        if (load) begin
-            held_1_next = word_1;
-        end
-    end
     assign shown_1 = held_1;
-
-    always @* begin
-        held_2_next = held_2;
-        if (load) begin
-            held_2_next = word_2;
-        end
-    end
     assign shown_2 = held_2;
-
-    always @* begin
-        held_3_next = held_3;
-        if (load) begin
-            held_3_next = word_3;
-        end
-    end
     assign shown_3 = held_3;
-
-    always @* begin
-        held_4_next = held_4;
-        if (load) begin
-            held_4_next = word_4;
-        end
-    end
     assign shown_4 = held_4;
-
-    always @* begin
-        held_5_next = held_5;
-        if (load) begin
-            held_5_next = word_5;
-        end
-    end
     assign shown_5 = held_5 | {16'd0, age_shown} | {1'b0, stale_shown, 30'd0};
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_0_next = shown_0[31:24];
-            end
-            2'd1: begin
-                byte_0_next = shown_0[23:16];
-            end
-            2'd2: begin
-                byte_0_next = shown_0[15:8];
-            end
-            default: begin
-                byte_0_next = shown_0[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_1_next = shown_1[31:24];
-            end
-            2'd1: begin
-                byte_1_next = shown_1[23:16];
-            end
-            2'd2: begin
-                byte_1_next = shown_1[15:8];
-            end
-            default: begin
-                byte_1_next = shown_1[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_2_next = shown_2[31:24];
-            end
-            2'd1: begin
-                byte_2_next = shown_2[23:16];
-            end
-            2'd2: begin
-                byte_2_next = shown_2[15:8];
-            end
-            default: begin
-                byte_2_next = shown_2[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_3_next = shown_3[31:24];
-            end
-            2'd1: begin
-                byte_3_next = shown_3[23:16];
-            end
-            2'd2: begin
-                byte_3_next = shown_3[15:8];
-            end
-            default: begin
-                byte_3_next = shown_3[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_4_next = shown_4[31:24];
-            end
-            2'd1: begin
-                byte_4_next = shown_4[23:16];
-            end
-            2'd2: begin
-                byte_4_next = shown_4[15:8];
-            end
-            default: begin
-                byte_4_next = shown_4[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_5_next = shown_5[31:24];
-            end
-            2'd1: begin
-                byte_5_next = shown_5[23:16];
-            end
-            2'd2: begin
-                byte_5_next = shown_5[15:8];
-            end
-            default: begin
-                byte_5_next = shown_5[7:0];
-            end
-        endcase
-    end
     assign read_out = read_in | read_byte;
     assign period_cycles = config0[10:0];
     assign position_bits = config0[21:16];
@@ -420,21 +229,44 @@ module s6_two_channel_channel_registers (
             config1 <= 32'h20800b8;
             config2 <= 32'hc501012;
         end else begin
-            waiting <= waiting_next;
+            // A trigger that the channel does not take gives no result of its own.
+            if (result_strobe) begin
+                waiting <= 1'b0;
+            end
+            if (new_set) begin
+                waiting <= trigger & !busy;
+            end
             behind <= behind_now;
             stale <= stale_now;
-            stale_shown <= stale_shown_next;
+            if (show) begin
+                stale_shown <= stale_now;
+                age_shown <= age_now;
+            end
             age <= age_now;
-            age_shown <= age_shown_next;
-            held_0 <= held_0_next;
-            held_1 <= held_1_next;
-            held_2 <= held_2_next;
-            held_3 <= held_3_next;
-            held_4 <= held_4_next;
-            held_5 <= held_5_next;
-            config0 <= config0_next;
-            config1 <= config1_next;
-            config2 <= config2_next;
+            if (load) begin
+                held_0 <= word_0;
+            end
+            if (load) begin
+                held_1 <= word_1;
+            end
+            if (load) begin
+                held_2 <= word_2;
+            end
+            if (load) begin
+                held_3 <= word_3;
+            end
+            if (load) begin
+                held_4 <= word_4;
+            end
+            if (load) begin
+                held_5 <= word_5;
+            end
+            // Not in the cycle of a trigger either: its frame has what was looked at when it was taken.
+            if (ring_home & !busy & !trigger) begin
+                config0 <= ring_word0;
+                config1 <= ring_word1;
+                config2 <= ring_word2;
+            end
         end
     end
 
@@ -442,7 +274,20 @@ module s6_two_channel_channel_registers (
         if (byte_0_reset) begin
             byte_0 <= 8'd0;
         end else begin
-            byte_0 <= byte_0_next;
+            case (lane)
+                2'd0: begin
+                    byte_0 <= shown_0[31:24];
+                end
+                2'd1: begin
+                    byte_0 <= shown_0[23:16];
+                end
+                2'd2: begin
+                    byte_0 <= shown_0[15:8];
+                end
+                default: begin
+                    byte_0 <= shown_0[7:0];
+                end
+            endcase
         end
     end
 
@@ -450,7 +295,20 @@ module s6_two_channel_channel_registers (
         if (byte_1_reset) begin
             byte_1 <= 8'd0;
         end else begin
-            byte_1 <= byte_1_next;
+            case (lane)
+                2'd0: begin
+                    byte_1 <= shown_1[31:24];
+                end
+                2'd1: begin
+                    byte_1 <= shown_1[23:16];
+                end
+                2'd2: begin
+                    byte_1 <= shown_1[15:8];
+                end
+                default: begin
+                    byte_1 <= shown_1[7:0];
+                end
+            endcase
         end
     end
 
@@ -458,7 +316,20 @@ module s6_two_channel_channel_registers (
         if (byte_2_reset) begin
             byte_2 <= 8'd0;
         end else begin
-            byte_2 <= byte_2_next;
+            case (lane)
+                2'd0: begin
+                    byte_2 <= shown_2[31:24];
+                end
+                2'd1: begin
+                    byte_2 <= shown_2[23:16];
+                end
+                2'd2: begin
+                    byte_2 <= shown_2[15:8];
+                end
+                default: begin
+                    byte_2 <= shown_2[7:0];
+                end
+            endcase
         end
     end
 
@@ -466,7 +337,20 @@ module s6_two_channel_channel_registers (
         if (byte_3_reset) begin
             byte_3 <= 8'd0;
         end else begin
-            byte_3 <= byte_3_next;
+            case (lane)
+                2'd0: begin
+                    byte_3 <= shown_3[31:24];
+                end
+                2'd1: begin
+                    byte_3 <= shown_3[23:16];
+                end
+                2'd2: begin
+                    byte_3 <= shown_3[15:8];
+                end
+                default: begin
+                    byte_3 <= shown_3[7:0];
+                end
+            endcase
         end
     end
 
@@ -474,7 +358,20 @@ module s6_two_channel_channel_registers (
         if (byte_4_reset) begin
             byte_4 <= 8'd0;
         end else begin
-            byte_4 <= byte_4_next;
+            case (lane)
+                2'd0: begin
+                    byte_4 <= shown_4[31:24];
+                end
+                2'd1: begin
+                    byte_4 <= shown_4[23:16];
+                end
+                2'd2: begin
+                    byte_4 <= shown_4[15:8];
+                end
+                default: begin
+                    byte_4 <= shown_4[7:0];
+                end
+            endcase
         end
     end
 
@@ -482,7 +379,20 @@ module s6_two_channel_channel_registers (
         if (byte_5_reset) begin
             byte_5 <= 8'd0;
         end else begin
-            byte_5 <= byte_5_next;
+            case (lane)
+                2'd0: begin
+                    byte_5 <= shown_5[31:24];
+                end
+                2'd1: begin
+                    byte_5 <= shown_5[23:16];
+                end
+                2'd2: begin
+                    byte_5 <= shown_5[15:8];
+                end
+                default: begin
+                    byte_5 <= shown_5[7:0];
+                end
+            endcase
         end
     end
 

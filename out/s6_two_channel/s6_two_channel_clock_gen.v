@@ -72,6 +72,7 @@ module s6_two_channel_clock_gen (
             level_next = 1'b0;
         end
     end
+
     assign endat_clk = level;
     assign will_rise = rise_now;
     assign rise = risen;

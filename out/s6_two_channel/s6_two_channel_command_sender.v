@@ -42,7 +42,6 @@ module s6_two_channel_command_sender (
     wire   [7:0] cells;
     wire   [2:0] cell_now;
     reg    [3:0] cells_left; initial cells_left = 4'd0;
-    reg    [3:0] cells_left_next;
     wire         _unused_ok = &{1'b0, start_supplement};
 
     // Cells in falling order: 7 = the lead-in 0 at F2, 6..1 = the command, 8 and 0 = driver off.
@@ -50,25 +49,23 @@ module s6_two_channel_command_sender (
     assign cell_now = cells_left[2:0];
 
     always @* begin
-        cells_left_next = cells_left;
-        if (fall & (|cells_left)) begin
-            cells_left_next = cells_left - 4'd1;
-        end
         data = cells[cell_now];
         oe = |cell_now;
-        if (aborts) begin
-            cells_left_next = 4'd0;
-        end
-        if (start) begin
-            cells_left_next = 4'd8;
-        end
     end
 
     always @(posedge clock) begin
         if (reset) begin
             cells_left <= 4'd0;
         end else begin
-            cells_left <= cells_left_next;
+            if (fall & (|cells_left)) begin
+                cells_left <= cells_left - 4'd1;
+            end
+            if (aborts) begin
+                cells_left <= 4'd0;
+            end
+            if (start) begin
+                cells_left <= 4'd8;
+            end
         end
     end
 

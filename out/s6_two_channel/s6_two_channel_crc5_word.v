@@ -111,6 +111,7 @@ module s6_two_channel_crc5_word (
             sum = sum ^ WEIGHT_4;
         end
     end
+
     assign crc = sum;
 endmodule
 

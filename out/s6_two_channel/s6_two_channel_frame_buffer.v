@@ -59,125 +59,39 @@ module s6_two_channel_frame_buffer (
     reg    [7:0] ram2k_0_read_data; initial ram2k_0_read_data = 8'd0;
     wire  [10:0] ram2k_0_write_address;
     reg          writing; initial writing = 1'b0;
-    reg          writing_next;
     reg    [3:0] cycle_at; initial cycle_at = 4'd0;
-    reg    [3:0] cycle_at_next;
     reg    [6:0] at; initial at = 7'd0;
-    reg    [6:0] at_next;
     wire         at_reset;
     reg          in_tail; initial in_tail = 1'b0;
     reg          is_end; initial is_end = 1'b0;
     reg          is_past; initial is_past = 1'b0;
     reg    [7:0] byte_now; initial byte_now = 8'd0;
-    reg    [7:0] byte_now_next;
     reg          is_zero; initial is_zero = 1'b0;
     reg          byte_end; initial byte_end = 1'b0;
     reg   [15:0] crc; initial crc = 16'hffff;
-    reg   [15:0] crc_next;
     wire         crc_reset;
     reg    [6:0] run; initial run = 7'd1;
-    reg    [6:0] run_next;
     wire         run_reset;
     reg   [12:0] write_at; initial write_at = 13'd0;
-    reg   [12:0] write_at_next;
     reg   [12:0] code_at; initial code_at = 13'd0;
-    reg   [12:0] code_at_next;
     reg   [12:0] start_at; initial start_at = 13'd0;
-    reg   [12:0] start_at_next;
     reg   [12:0] read_at; initial read_at = 13'd0;
-    reg   [12:0] read_at_next;
     reg   [12:0] used; initial used = 13'd0;
     reg          fits; initial fits = 1'b1;
     reg          took; initial took = 1'b0;
     wire         _unused_ok = &{1'b0, write_address[12:11]};
 
-    always @* begin
-        at_next = at;
-        if (byte_end) begin
-            at_next = at + 7'd1;
-        end
-    end
-
-    always @* begin
-        run_next = run;
-        if (byte_end) begin
-            run_next = run + 7'd1;
-        end
-    end
-
-    always @* begin
-        writing_next = writing;
-        if (start) begin
-            writing_next = 1'b1;
-        end
-        if (byte_end & is_past) begin
-            writing_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        start_at_next = start_at;
-        if (byte_end & is_end) begin
-            start_at_next = write_at;
-        end
-    end
-
-    always @* begin
-        read_at_next = read_at;
-        if (take) begin
-            read_at_next = (read_at + 13'd1) & MASK;
-        end
-    end
     // Each frame begins anew.
     assign at_reset = !writing;
     assign crc_reset = !writing;
     assign run_reset = !writing | (byte_end & is_zero);
-
-    always @* begin
-        // Which byte, and which of its 16 cycles.
-        cycle_at_next = cycle_at + 4'd1;
-        if (!writing) begin
-            cycle_at_next = 4'd0;
-        end
-    end
     assign block = at[6:3];
     assign byte_at = at[2:0];
-
-    always @* begin
-        byte_now_next = set_byte;
-        if (in_tail & !(|at[2:1])) begin
-            byte_now_next = crc[7:0];
-            if (at[0]) begin
-                byte_now_next = crc[15:8];
-            end
-        end
-    end
     // A bit of the CRC in each of the second eight cycles.
     assign bit_index = ~cycle_at[2:0];
     assign feedback = crc[15] ^ byte_now[bit_index];
-
-    always @* begin
-        crc_next = crc;
-        if (cycle_at[3] & !in_tail) begin
-            crc_next = {crc[14:0], 1'b0};
-            if (feedback) begin
-                crc_next = {crc[14:0], 1'b0} ^ POLYNOMIAL;
-            end
-        end
-    end
     // COBS: a zero becomes the place of the next code byte, and its distance goes to the last one.
     assign advance = start | (byte_end & !is_end & !is_past);
-
-    always @* begin
-        write_at_next = write_at;
-        code_at_next = code_at;
-        if (advance) begin
-            write_at_next = (write_at + 13'd1) & MASK;
-            if (start | is_zero) begin
-                code_at_next = write_at;
-            end
-        end
-    end
     assign write = byte_end & !is_past;
 
     always @* begin
@@ -191,6 +105,7 @@ module s6_two_channel_frame_buffer (
             write_byte = 8'd0;
         end
     end
+
     assign idle = !writing;
     assign room = fits;
     assign waiting_bytes = {3'd0, used};
@@ -218,19 +133,42 @@ module s6_two_channel_frame_buffer (
             fits <= 1'b1;
             took <= 1'b0;
         end else begin
-            writing <= writing_next;
-            cycle_at <= cycle_at_next;
+            if (start) begin
+                writing <= 1'b1;
+            end
+            if (byte_end & is_past) begin
+                writing <= 1'b0;
+            end
+            // Which byte, and which of its 16 cycles.
+            cycle_at <= cycle_at + 4'd1;
+            if (!writing) begin
+                cycle_at <= 4'd0;
+            end
             // The tail: 0, 1 = CRC, 2 = the zero that COBS puts at the end, 3 = the end of the frame, 4 = time for the counters.
             in_tail <= at[6:3] == TAIL_BLOCK;
             is_end <= in_tail & (&at[1:0]);
             is_past <= in_tail & at[2];
-            byte_now <= byte_now_next;
+            byte_now <= set_byte;
+            if (in_tail & !(|at[2:1])) begin
+                byte_now <= crc[7:0];
+                if (at[0]) begin
+                    byte_now <= crc[15:8];
+                end
+            end
             is_zero <= !(|byte_now);
             byte_end <= writing & (cycle_at == 4'd14);
-            write_at <= write_at_next;
-            code_at <= code_at_next;
-            start_at <= start_at_next;
-            read_at <= read_at_next;
+            if (advance) begin
+                write_at <= (write_at + 13'd1) & MASK;
+                if (start | is_zero) begin
+                    code_at <= write_at;
+                end
+            end
+            if (byte_end & is_end) begin
+                start_at <= write_at;
+            end
+            if (take) begin
+                read_at <= (read_at + 13'd1) & MASK;
+            end
             used <= (start_at - read_at) & MASK;
             fits <= used <= MOST_USED;
             // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after that.
@@ -242,7 +180,9 @@ module s6_two_channel_frame_buffer (
         if (at_reset) begin
             at <= 7'd0;
         end else begin
-            at <= at_next;
+            if (byte_end) begin
+                at <= at + 7'd1;
+            end
         end
     end
 
@@ -250,7 +190,12 @@ module s6_two_channel_frame_buffer (
         if (crc_reset) begin
             crc <= 16'hffff;
         end else begin
-            crc <= crc_next;
+            if (cycle_at[3] & !in_tail) begin
+                crc <= {crc[14:0], 1'b0};
+                if (feedback) begin
+                    crc <= {crc[14:0], 1'b0} ^ POLYNOMIAL;
+                end
+            end
         end
     end
 
@@ -258,7 +203,9 @@ module s6_two_channel_frame_buffer (
         if (run_reset) begin
             run <= 7'd1;
         end else begin
-            run <= run_next;
+            if (byte_end) begin
+                run <= run + 7'd1;
+            end
         end
     end
 

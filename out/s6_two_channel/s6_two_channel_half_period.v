@@ -33,11 +33,8 @@ module s6_two_channel_half_period (
     wire   [9:0] half_cycles;
     reg          tick_now;
     reg    [9:0] count; initial count = 10'd2;
-    reg    [9:0] count_next;
     reg          hit; initial hit = 1'b0;
-    reg          hit_next;
     reg          hit_late; initial hit_late = 1'b0;
-    reg          hit_late_next;
 
     assign half_cycles = period_cycles[10:1];
 
@@ -48,21 +45,6 @@ module s6_two_channel_half_period (
         end
     end
 
-    always @* begin
-        hit_next = count == half_cycles;
-        hit_late_next = hit;
-        count_next = count + 10'd1;
-        if (restart | tick_now) begin
-            count_next = 10'd2;
-            hit_next = 1'b0;
-            hit_late_next = 1'b0;
-        end
-        if (restart & began) begin
-            count_next = 10'd3;
-            // A half of two cycles is over at once.
-            hit_next = 1'b0;
-        end
-    end
     assign tick = tick_now;
     assign left_cycles = (half_cycles + {9'd0, second & period_cycles[0]} + 10'd2) - count;
 
@@ -72,9 +54,19 @@ module s6_two_channel_half_period (
             hit <= 1'b0;
             hit_late <= 1'b0;
         end else begin
-            count <= count_next;
-            hit <= hit_next;
-            hit_late <= hit_late_next;
+            hit <= count == half_cycles;
+            hit_late <= hit;
+            count <= count + 10'd1;
+            if (restart | tick_now) begin
+                count <= 10'd2;
+                hit <= 1'b0;
+                hit_late <= 1'b0;
+            end
+            if (restart & began) begin
+                count <= 10'd3;
+                // A half of two cycles is over at once.
+                hit <= 1'b0;
+            end
         end
     end
 

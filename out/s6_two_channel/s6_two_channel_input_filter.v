@@ -58,6 +58,7 @@ module s6_two_channel_input_filter (
             end
         end
     end
+
     assign edge_first = middle & !level_now;
     assign level = level_now;
     assign edge_strobe = edge_now;

@@ -51,34 +51,9 @@ module s6_two_channel_last_edge (
     wire         comes_now;
     reg          sent; initial sent = 1'b0;
     reg          stall; initial stall = 1'b0;
-    reg          stall_next;
     reg          waited; initial waited = 1'b0;
-    reg          waited_next;
 
     assign holds_now = sent & !started;
-
-    always @* begin
-        stall_next = stall;
-        if (holds_now) begin
-            stall_next = 1'b1;
-        end
-        if (none_under_way | !running) begin
-            stall_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        waited_next = waited;
-        if (holds_now) begin
-            waited_next = 1'b1;
-        end
-        if (was_center & in_recovery) begin
-            waited_next = 1'b0;
-        end
-        if (start) begin
-            waited_next = 1'b0;
-        end
-    end
     assign all_sent = sent;
     assign stalled = stall;
     assign holds = stall;
@@ -93,8 +68,21 @@ module s6_two_channel_last_edge (
             waited <= 1'b0;
         end else begin
             sent <= no_pulse_left;
-            stall <= stall_next;
-            waited <= waited_next;
+            if (holds_now) begin
+                stall <= 1'b1;
+            end
+            if (none_under_way | !running) begin
+                stall <= 1'b0;
+            end
+            if (holds_now) begin
+                waited <= 1'b1;
+            end
+            if (was_center & in_recovery) begin
+                waited <= 1'b0;
+            end
+            if (start) begin
+                waited <= 1'b0;
+            end
         end
     end
 endmodule

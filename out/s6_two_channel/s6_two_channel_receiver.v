@@ -137,7 +137,6 @@ module s6_two_channel_receiver (
     reg          f2_bit; initial f2_bit = 1'b1;
     reg          f2_bit_next;
     reg    [4:0] crc_bits; initial crc_bits = 5'd0;
-    reg    [4:0] crc_bits_next;
     reg    [4:0] crc_calc; initial crc_calc = 5'd0;
     reg    [4:0] crc_calc_next;
     reg          take_crc; initial take_crc = 1'b0;
@@ -178,6 +177,7 @@ module s6_two_channel_receiver (
             skip_step = rise;
         end
     end
+
     assign start_sample = (field == FIELD_START) & sample & level;
     // Cells and pulses.
     // Where a bit has few system clock cycles cells go on until the end has been seen.
@@ -222,6 +222,7 @@ module s6_two_channel_receiver (
             aligned_at = 4'd6;
         end
     end
+
     assign is_taken = last_taken;
     assign crc_fits = crc_bits == crc_calc;
 
@@ -375,16 +376,6 @@ module s6_two_channel_receiver (
         end
     end
 
-    always @* begin
-        crc_bits_next = crc_bits;
-        // The CRC as received, and the guard's look at the stored word.
-        if (crc_bit) begin
-            crc_bits_next = {crc_bits[3:0], level};
-        end
-        if (put) begin
-            crc_bits_next = put_crc;
-        end
-    end
     // How far the answer is.
     assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
     assign hunting = hunting_now;
@@ -400,6 +391,7 @@ module s6_two_channel_receiver (
         done = done_now;
         finished = done_now;
     end
+
     assign payload = word[47:0];
     assign f1 = f1_bit;
     assign f2 = f2_bit;
@@ -443,7 +435,13 @@ module s6_two_channel_receiver (
             covered <= covered_d;
             f1_bit <= f1_bit_next;
             f2_bit <= f2_bit_next;
-            crc_bits <= crc_bits_next;
+            // The CRC as received, and the guard's look at the stored word.
+            if (crc_bit) begin
+                crc_bits <= {crc_bits[3:0], level};
+            end
+            if (put) begin
+                crc_bits <= put_crc;
+            end
             crc_calc <= crc_calc_next;
             take_crc <= last_payload;
             align <= align_next;

@@ -123,53 +123,35 @@ module s6_two_channel_register_bank (
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
     reg   [10:0] held_address; initial held_address = 11'd0;
-    reg   [10:0] held_address_next;
     reg          turning; initial turning = 1'b0;
-    reg          turning_next;
     reg    [3:0] byte_at; initial byte_at = 4'd0;
-    reg    [3:0] byte_at_next;
     reg    [3:0] block_at; initial block_at = 4'd0;
-    reg    [3:0] block_at_next;
     reg          turn; initial turn = 1'b0;
     reg          passes; initial passes = 1'b0;
     reg          byte_passes; initial byte_passes = 1'b0;
     reg          ended; initial ended = 1'b0;
     reg          done_now; initial done_now = 1'b0;
     reg          write_now; initial write_now = 1'b0;
-    reg          write_now_next;
     reg          config_page; initial config_page = 1'b0;
-    reg          config_page_next;
     reg    [5:0] skipped_words; initial skipped_words = 6'd63;
-    reg    [5:0] skipped_words_next;
     reg    [7:0] skipped_channels; initial skipped_channels = 8'd255;
-    reg    [7:0] skipped_channels_next;
     reg          rom_skip; initial rom_skip = 1'b1;
     reg          count_skip; initial count_skip = 1'b1;
     reg    [7:0] rom_byte; initial rom_byte = 8'd0;
-    reg    [7:0] rom_byte_next;
     reg   [31:0] count_held; initial count_held = 32'd0;
-    reg   [31:0] count_held_next;
     reg    [7:0] count_byte; initial count_byte = 8'd0;
-    reg    [7:0] count_byte_next;
     reg    [7:0] ring_byte; initial ring_byte = 8'd0;
-    reg    [7:0] ring_byte_next;
     reg    [7:0] byte_value; initial byte_value = 8'd0;
     reg          trigger_strobe; initial trigger_strobe = 1'b0;
     reg    [7:0] calibrate_strobe; initial calibrate_strobe = 8'd0;
-    reg    [7:0] calibrate_strobe_next;
     reg    [2:0] active_sources; initial active_sources = 3'd3;
-    reg    [2:0] active_sources_next;
     reg   [23:0] active_period; initial active_period = 24'h2710;
-    reg   [23:0] active_period_next;
     reg          hold; initial hold = 1'b0;
-    reg          hold_next;
     reg          blocked; initial blocked = 1'b1;
     reg          read_before; initial read_before = 1'b1;
     reg          mixed; initial mixed = 1'b0;
     reg          one_gone; initial one_gone = 1'b0;
-    reg          one_gone_next;
     reg          overdue; initial overdue = 1'b0;
-    reg          overdue_next;
     wire         _unused_ok = &{1'b0, write_data[23:8], ring_word0[31:3], ring_word1[31:24], ring_word2[31:1]};
 
     s6_two_channel_config_ring_1 u_ring (
@@ -183,36 +165,9 @@ module s6_two_channel_register_bank (
         .word2(ring_word2)
     );
 
-    always @* begin
-        active_sources_next = active_sources;
-        active_period_next = active_period;
-        hold_next = hold;
-        if (!turn) begin
-            active_sources_next = ring_word0[2:0];
-            active_period_next = ring_word1[23:0];
-            hold_next = ring_word2[0];
-        end
-    end
     // What an access is stands from its begin to its end, whatever the front shows.
     assign busy = turning | ended;
-
-    always @* begin
-        held_address_next = held_address;
-        if (!busy) begin
-            held_address_next = word_address;
-        end
-    end
     assign starts = access & !busy;
-
-    always @* begin
-        ring_byte_next = ring_byte;
-        if (byte_passes) begin
-            ring_byte_next = ring_byte_out[7:0];
-        end
-        if (starts) begin
-            ring_byte_next = 8'd0;
-        end
-    end
     assign begins = starts;
     assign address = held_address;
     // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
@@ -228,41 +183,11 @@ module s6_two_channel_register_bank (
         end
     end
 
-    always @* begin
-        byte_at_next = byte_at;
-        block_at_next = block_at;
-        turning_next = turning;
-        write_now_next = write_now;
-        if (turning) begin
-            byte_at_next = byte_at + 4'd1;
-            if (block_end) begin
-                byte_at_next = 4'd0;
-                block_at_next = block_at + 4'd1;
-            end
-            if (at_end) begin
-                turning_next = 1'b0;
-            end
-        end else begin
-            byte_at_next = 4'd0;
-            block_at_next = 4'd0;
-        end
-        if (starts) begin
-            turning_next = 1'b1;
-            write_now_next = write;
-        end
-    end
     assign ring_turn = turn;
     assign ring_home = !turn;
     assign done = done_now;
     // Configuration: the ring carries 3 of the 8 words that a block has room for.
     assign low_page = in_range & !(|word_address[10:9]);
-
-    always @* begin
-        config_page_next = config_page;
-        if (!busy) begin
-            config_page_next = low_page & word_address[8] & !word_address[7] & !word_address[2];
-        end
-    end
     assign low_address = word_address[8:0];
     assign at_word = turning & config_page & (block_at == held_address[6:3]) & (byte_at[3:2] == held_address[1:0]);
     assign written = write_data[31:24];
@@ -273,6 +198,7 @@ module s6_two_channel_register_bank (
             head = {1'b0, written};
         end
     end
+
     assign take_byte = passes;
     assign ring_out = head;
     // The card's own words.
@@ -305,37 +231,8 @@ module s6_two_channel_register_bank (
         endcase
     end
 
-    always @* begin
-        rom_byte_next = rom_byte;
-        count_byte_next = count_byte;
-        case (lane)
-            2'd0: begin
-                rom_byte_next = rom_word[31:24];
-                count_byte_next = count_held[31:24];
-            end
-            2'd1: begin
-                rom_byte_next = rom_word[23:16];
-                count_byte_next = count_held[23:16];
-            end
-            2'd2: begin
-                rom_byte_next = rom_word[15:8];
-                count_byte_next = count_held[15:8];
-            end
-            default: begin
-                rom_byte_next = rom_word[7:0];
-                count_byte_next = count_held[7:0];
-            end
-        endcase
-    end
     // Strobes, and the settings of the card.
     assign strobe = starts & write & low_page;
-
-    always @* begin
-        calibrate_strobe_next = 8'd0;
-        if (strobe & (low_address == CALIBRATE_AT)) begin
-            calibrate_strobe_next = write_data[7:0];
-        end
-    end
     assign trigger_now = trigger_strobe;
     assign calibrate = calibrate_strobe;
     assign sources = active_sources;
@@ -344,88 +241,8 @@ module s6_two_channel_register_bank (
     assign blocked_now = reading | hold;
     assign mixed_now = owes & (brought | mixed);
     assign load_now = !blocked & (!mixed_now | (blocked_now & overdue));
-
-    always @* begin
-        one_gone_next = one_gone;
-        overdue_next = overdue;
-        if (load_now) begin
-            one_gone_next = 1'b0;
-            overdue_next = 1'b0;
-        end
-        if (taken) begin
-            one_gone_next = 1'b1;
-            overdue_next = one_gone & !load_now;
-        end
-    end
-
-    always @* begin
-        count_held_next = count_held;
-        if (load_now) begin
-            count_held_next = trigger_count;
-        end
-    end
     assign load = load_now;
     assign result_page = low_page & (&word_address[8:7]);
-
-    always @* begin
-        skipped_words_next = 6'd63;
-        case (word_address[2:0])
-            3'd0: begin
-                skipped_words_next = 6'd62;
-            end
-            3'd1: begin
-                skipped_words_next = 6'd61;
-            end
-            3'd2: begin
-                skipped_words_next = 6'd59;
-            end
-            3'd3: begin
-                skipped_words_next = 6'd55;
-            end
-            3'd4: begin
-                skipped_words_next = 6'd47;
-            end
-            3'd5: begin
-                skipped_words_next = 6'd31;
-            end
-            default: begin
-            end
-        endcase
-    end
-
-    always @* begin
-        skipped_channels_next = 8'd255;
-        if (result_page) begin
-            case (word_address[6:3])
-                4'd0: begin
-                    skipped_channels_next = 8'd254;
-                end
-                4'd1: begin
-                    skipped_channels_next = 8'd253;
-                end
-                4'd2: begin
-                    skipped_channels_next = 8'd251;
-                end
-                4'd3: begin
-                    skipped_channels_next = 8'd247;
-                end
-                4'd4: begin
-                    skipped_channels_next = 8'd239;
-                end
-                4'd5: begin
-                    skipped_channels_next = 8'd223;
-                end
-                4'd6: begin
-                    skipped_channels_next = 8'd191;
-                end
-                4'd7: begin
-                    skipped_channels_next = 8'd127;
-                end
-                default: begin
-                end
-            endcase
-        end
-    end
     assign word_skip = skipped_words;
     assign channel_skip = skipped_channels;
     assign read_byte = byte_value;
@@ -461,37 +278,124 @@ module s6_two_channel_register_bank (
             one_gone <= 1'b0;
             overdue <= 1'b0;
         end else begin
-            held_address <= held_address_next;
-            turning <= turning_next;
-            byte_at <= byte_at_next;
-            block_at <= block_at_next;
+            if (!busy) begin
+                held_address <= word_address;
+            end
+            if (turning) begin
+                byte_at <= byte_at + 4'd1;
+                if (block_end) begin
+                    byte_at <= 4'd0;
+                    block_at <= block_at + 4'd1;
+                end
+                if (at_end) begin
+                    turning <= 1'b0;
+                end
+            end else begin
+                byte_at <= 4'd0;
+                block_at <= 4'd0;
+            end
+            if (starts) begin
+                turning <= 1'b1;
+                write_now <= write;
+            end
             turn <= turning & whole_turn;
             passes <= at_word;
             byte_passes <= at_word & (byte_at[1:0] == lane);
             ended <= turning & at_end;
             done_now <= ended;
-            write_now <= write_now_next;
-            config_page <= config_page_next;
-            skipped_words <= skipped_words_next;
-            skipped_channels <= skipped_channels_next;
+            if (!busy) begin
+                config_page <= low_page & word_address[8] & !word_address[7] & !word_address[2];
+            end
+            skipped_words <= 6'd63;
+            case (word_address[2:0])
+                3'd0: begin
+                    skipped_words <= 6'd62;
+                end
+                3'd1: begin
+                    skipped_words <= 6'd61;
+                end
+                3'd2: begin
+                    skipped_words <= 6'd59;
+                end
+                3'd3: begin
+                    skipped_words <= 6'd55;
+                end
+                3'd4: begin
+                    skipped_words <= 6'd47;
+                end
+                3'd5: begin
+                    skipped_words <= 6'd31;
+                end
+                default: begin
+                end
+            endcase
+            skipped_channels <= 8'd255;
+            if (result_page) begin
+                case (word_address[6:3])
+                    4'd0: begin
+                        skipped_channels <= 8'd254;
+                    end
+                    4'd1: begin
+                        skipped_channels <= 8'd253;
+                    end
+                    4'd2: begin
+                        skipped_channels <= 8'd251;
+                    end
+                    4'd3: begin
+                        skipped_channels <= 8'd247;
+                    end
+                    4'd4: begin
+                        skipped_channels <= 8'd239;
+                    end
+                    4'd5: begin
+                        skipped_channels <= 8'd223;
+                    end
+                    4'd6: begin
+                        skipped_channels <= 8'd191;
+                    end
+                    4'd7: begin
+                        skipped_channels <= 8'd127;
+                    end
+                    default: begin
+                    end
+                endcase
+            end
             rom_skip <= !card_page | word_address[3];
             count_skip <= !low_page | (low_address != TRIGGER_COUNT_AT);
-            count_held <= count_held_next;
-            ring_byte <= ring_byte_next;
+            if (load_now) begin
+                count_held <= trigger_count;
+            end
+            if (byte_passes) begin
+                ring_byte <= ring_byte_out[7:0];
+            end
+            if (starts) begin
+                ring_byte <= 8'd0;
+            end
             // The byte that is read.
             byte_value <= rom_byte | count_byte | ring_byte | channel_byte | part_byte;
             trigger_strobe <= strobe & (low_address == TRIGGER_NOW_AT) & write_data[0];
-            calibrate_strobe <= calibrate_strobe_next;
-            active_sources <= active_sources_next;
-            active_period <= active_period_next;
-            hold <= hold_next;
+            calibrate_strobe <= 8'd0;
+            if (strobe & (low_address == CALIBRATE_AT)) begin
+                calibrate_strobe <= write_data[7:0];
+            end
+            if (!turn) begin
+                active_sources <= ring_word0[2:0];
+                active_period <= ring_word1[23:0];
+                hold <= ring_word2[0];
+            end
             blocked <= blocked_now;
             // Results.
             // Reading blocks a cycle late: the first byte is read later still.
             read_before <= reading;
             mixed <= mixed_now & !taken;
-            one_gone <= one_gone_next;
-            overdue <= overdue_next;
+            if (load_now) begin
+                one_gone <= 1'b0;
+                overdue <= 1'b0;
+            end
+            if (taken) begin
+                one_gone <= 1'b1;
+                overdue <= one_gone & !load_now;
+            end
         end
     end
 
@@ -499,7 +403,20 @@ module s6_two_channel_register_bank (
         if (rom_skip) begin
             rom_byte <= 8'd0;
         end else begin
-            rom_byte <= rom_byte_next;
+            case (lane)
+                2'd0: begin
+                    rom_byte <= rom_word[31:24];
+                end
+                2'd1: begin
+                    rom_byte <= rom_word[23:16];
+                end
+                2'd2: begin
+                    rom_byte <= rom_word[15:8];
+                end
+                default: begin
+                    rom_byte <= rom_word[7:0];
+                end
+            endcase
         end
     end
 
@@ -507,7 +424,20 @@ module s6_two_channel_register_bank (
         if (count_skip) begin
             count_byte <= 8'd0;
         end else begin
-            count_byte <= count_byte_next;
+            case (lane)
+                2'd0: begin
+                    count_byte <= count_held[31:24];
+                end
+                2'd1: begin
+                    count_byte <= count_held[23:16];
+                end
+                2'd2: begin
+                    count_byte <= count_held[15:8];
+                end
+                default: begin
+                    count_byte <= count_held[7:0];
+                end
+            endcase
         end
     end
 

@@ -53,65 +53,17 @@ module s6_two_channel_set_channel_number_1 (
     wire  [15:0] status;
     wire   [7:0] shown;
     reg          took; initial took = 1'b0;
-    reg          took_next;
     reg          waiting; initial waiting = 1'b0;
-    reg          waiting_next;
     reg   [47:0] position_taken; initial position_taken = 48'd0;
-    reg   [47:0] position_taken_next;
     wire         position_taken_reset;
     reg   [15:0] status_taken; initial status_taken = 16'd0;
-    reg   [15:0] status_taken_next;
     wire         status_taken_reset;
     reg          took_taken; initial took_taken = 1'b0;
-    reg          took_taken_next;
     reg          missing_taken; initial missing_taken = 1'b0;
-    reg          missing_taken_next;
     reg    [7:0] byte_now; initial byte_now = 8'd0;
-    reg    [7:0] byte_now_next;
     wire         byte_now_reset;
     wire         _unused_ok = &{1'b0, flags[11:0], flags[19]};
 
-    always @* begin
-        waiting_next = waiting;
-        took_next = took;
-        if (result_strobe) begin
-            waiting_next = 1'b0;
-        end
-        if (trigger) begin
-            took_next = !busy;
-            waiting_next = !busy;
-        end
-    end
-
-    always @* begin
-        byte_now_next = byte_now;
-        case (byte_at)
-            3'd0: begin
-                byte_now_next = position_taken[7:0];
-            end
-            3'd1: begin
-                byte_now_next = position_taken[15:8];
-            end
-            3'd2: begin
-                byte_now_next = position_taken[23:16];
-            end
-            3'd3: begin
-                byte_now_next = position_taken[31:24];
-            end
-            3'd4: begin
-                byte_now_next = position_taken[39:32];
-            end
-            3'd5: begin
-                byte_now_next = position_taken[47:40];
-            end
-            3'd6: begin
-                byte_now_next = status_taken[7:0] | {2'd0, took_taken, 5'd0};
-            end
-            default: begin
-                byte_now_next = status_taken[15:8] | {missing_taken, 7'd0};
-            end
-        endcase
-    end
     assign open = waiting & !result_strobe;
     assign owes = open;
     assign replaced = took & !waiting & result_strobe;
@@ -120,19 +72,6 @@ module s6_two_channel_set_channel_number_1 (
     assign position_taken_reset = take & !is_own;
     assign status_taken_reset = take & !is_own;
     assign status = {1'b0, flags[18:12], fresh, position_valid, 1'b0, cause};
-
-    always @* begin
-        position_taken_next = position_taken;
-        status_taken_next = status_taken;
-        took_taken_next = took_taken;
-        missing_taken_next = missing_taken;
-        if (take) begin
-            position_taken_next = position;
-            status_taken_next = status;
-            took_taken_next = took;
-            missing_taken_next = open;
-        end
-    end
     // A reset by deselection alone takes no logic.
     assign byte_now_reset = block != NUMBER;
     assign shown = byte_now;
@@ -145,10 +84,17 @@ module s6_two_channel_set_channel_number_1 (
             took_taken <= 1'b0;
             missing_taken <= 1'b0;
         end else begin
-            took <= took_next;
-            waiting <= waiting_next;
-            took_taken <= took_taken_next;
-            missing_taken <= missing_taken_next;
+            if (result_strobe) begin
+                waiting <= 1'b0;
+            end
+            if (trigger) begin
+                took <= !busy;
+                waiting <= !busy;
+            end
+            if (take) begin
+                took_taken <= took;
+                missing_taken <= open;
+            end
         end
     end
 
@@ -156,7 +102,9 @@ module s6_two_channel_set_channel_number_1 (
         if (position_taken_reset) begin
             position_taken <= 48'd0;
         end else begin
-            position_taken <= position_taken_next;
+            if (take) begin
+                position_taken <= position;
+            end
         end
     end
 
@@ -164,7 +112,9 @@ module s6_two_channel_set_channel_number_1 (
         if (status_taken_reset) begin
             status_taken <= 16'd0;
         end else begin
-            status_taken <= status_taken_next;
+            if (take) begin
+                status_taken <= status;
+            end
         end
     end
 
@@ -172,7 +122,32 @@ module s6_two_channel_set_channel_number_1 (
         if (byte_now_reset) begin
             byte_now <= 8'd0;
         end else begin
-            byte_now <= byte_now_next;
+            case (byte_at)
+                3'd0: begin
+                    byte_now <= position_taken[7:0];
+                end
+                3'd1: begin
+                    byte_now <= position_taken[15:8];
+                end
+                3'd2: begin
+                    byte_now <= position_taken[23:16];
+                end
+                3'd3: begin
+                    byte_now <= position_taken[31:24];
+                end
+                3'd4: begin
+                    byte_now <= position_taken[39:32];
+                end
+                3'd5: begin
+                    byte_now <= position_taken[47:40];
+                end
+                3'd6: begin
+                    byte_now <= status_taken[7:0] | {2'd0, took_taken, 5'd0};
+                end
+                default: begin
+                    byte_now <= status_taken[15:8] | {missing_taken, 7'd0};
+                end
+            endcase
         end
     end
 endmodule

@@ -82,76 +82,27 @@ module s6_two_channel_snapshot (
     reg   [15:0] age_now;
     reg          strobe; initial strobe = 1'b0;
     reg   [47:0] held; initial held = 48'd0;
-    reg   [47:0] held_next;
     reg    [4:0] held_crc; initial held_crc = 5'd0;
-    reg    [4:0] held_crc_next;
     reg    [5:0] held_width; initial held_width = 6'd0;
-    reg    [5:0] held_width_next;
     reg          held_f2; initial held_f2 = 1'b0;
-    reg          held_f2_next;
     reg    [5:0] earlier_width; initial earlier_width = 6'd0;
-    reg    [5:0] earlier_width_next;
     reg          earlier_f2; initial earlier_f2 = 1'b0;
-    reg          earlier_f2_next;
     reg          earlier_valid; initial earlier_valid = 1'b0;
-    reg          earlier_valid_next;
     reg          unconfirmed; initial unconfirmed = 1'b0;
-    reg          unconfirmed_next;
     reg          valid; initial valid = 1'b0;
-    reg          valid_next;
     reg          is_fresh; initial is_fresh = 1'b0;
-    reg          is_fresh_next;
     reg   [15:0] count; initial count = 16'd0;
-    reg   [15:0] count_next;
     reg   [31:0] moment; initial moment = 32'd0;
-    reg   [31:0] moment_next;
     reg   [31:0] stamp; initial stamp = 32'd0;
-    reg   [31:0] stamp_next;
     reg   [15:0] age; initial age = 16'd0;
-    reg   [15:0] age_next;
     reg          age_full; initial age_full = 1'b0;
     reg    [4:0] cause_held; initial cause_held = 5'd0;
-    reg    [4:0] cause_held_next;
     reg   [19:0] flags_held; initial flags_held = 20'd0;
-    reg   [19:0] flags_held_next;
     reg    [4:0] received; initial received = 5'd0;
-    reg    [4:0] received_next;
     reg    [4:0] computed; initial computed = 5'd0;
-    reg    [4:0] computed_next;
 
     assign take_good = publish & good;
-
-    always @* begin
-        age_next = age;
-        if (tick_us & !age_full) begin
-            age_next = age + 16'd1;
-        end
-        if (unconfirmed & confirm) begin
-            age_next = 16'd0;
-        end
-    end
     assign take_back = withdraw & unconfirmed;
-
-    always @* begin
-        unconfirmed_next = unconfirmed;
-        if (confirm | take_back) begin
-            unconfirmed_next = 1'b0;
-        end
-        if (take_good) begin
-            unconfirmed_next = 1'b1;
-        end
-    end
-
-    always @* begin
-        moment_next = moment;
-        // Between a result and the end of its frame moment keeps the time stamp of the position before.
-        if (take_good) begin
-            moment_next = stamp;
-        end
-        if (first_fall) begin
-            moment_next = timestamp;
-        end
-    end
 
     always @* begin
         age_now = age;
@@ -160,53 +111,6 @@ module s6_two_channel_snapshot (
         end
     end
 
-    always @* begin
-        is_fresh_next = is_fresh;
-        count_next = count;
-        received_next = received;
-        computed_next = computed;
-        held_next = held;
-        held_crc_next = held_crc;
-        held_width_next = held_width;
-        held_f2_next = held_f2;
-        stamp_next = stamp;
-        valid_next = valid;
-        earlier_width_next = earlier_width;
-        earlier_f2_next = earlier_f2;
-        earlier_valid_next = earlier_valid;
-        cause_held_next = cause_held;
-        flags_held_next = flags_held;
-        if (publish) begin
-            is_fresh_next = good;
-            count_next = count + 16'd1;
-            received_next = crc_received_in;
-            computed_next = crc_computed_in;
-        end
-        if (take_good) begin
-            held_next = position_in;
-            held_crc_next = crc_received_in;
-            held_width_next = width_in;
-            held_f2_next = has_f2_in;
-            stamp_next = moment;
-            valid_next = 1'b1;
-            earlier_width_next = held_width;
-            earlier_f2_next = held_f2;
-            earlier_valid_next = valid;
-        end
-        if (take_back) begin
-            held_next = position_in;
-            held_crc_next = crc_received_in;
-            held_width_next = earlier_width;
-            held_f2_next = earlier_f2;
-            stamp_next = moment;
-            valid_next = earlier_valid;
-            is_fresh_next = 1'b0;
-        end
-        if (publish | late_fault) begin
-            cause_held_next = cause_told;
-            flags_held_next = flags_told;
-        end
-    end
     assign swap = take_good;
     assign result_strobe = strobe;
     assign position = held;
@@ -247,26 +151,57 @@ module s6_two_channel_snapshot (
             computed <= 5'd0;
         end else begin
             strobe <= publish;
-            held <= held_next;
-            held_crc <= held_crc_next;
-            held_width <= held_width_next;
-            held_f2 <= held_f2_next;
-            earlier_width <= earlier_width_next;
-            earlier_f2 <= earlier_f2_next;
-            earlier_valid <= earlier_valid_next;
-            unconfirmed <= unconfirmed_next;
-            valid <= valid_next;
-            is_fresh <= is_fresh_next;
-            count <= count_next;
-            moment <= moment_next;
-            stamp <= stamp_next;
-            age <= age_next;
+            if (publish) begin
+                is_fresh <= good;
+                count <= count + 16'd1;
+                received <= crc_received_in;
+                computed <= crc_computed_in;
+            end
+            if (take_good) begin
+                held <= position_in;
+                held_crc <= crc_received_in;
+                held_width <= width_in;
+                held_f2 <= has_f2_in;
+                stamp <= moment;
+                valid <= 1'b1;
+                earlier_width <= held_width;
+                earlier_f2 <= held_f2;
+                earlier_valid <= valid;
+            end
+            if (take_back) begin
+                held <= position_in;
+                held_crc <= crc_received_in;
+                held_width <= earlier_width;
+                held_f2 <= earlier_f2;
+                stamp <= moment;
+                valid <= earlier_valid;
+                is_fresh <= 1'b0;
+            end
+            if (publish | late_fault) begin
+                cause_held <= cause_told;
+                flags_held <= flags_told;
+            end
+            if (confirm | take_back) begin
+                unconfirmed <= 1'b0;
+            end
+            if (take_good) begin
+                unconfirmed <= 1'b1;
+            end
+            // Between a result and the end of its frame moment keeps the time stamp of the position before.
+            if (take_good) begin
+                moment <= stamp;
+            end
+            if (first_fall) begin
+                moment <= timestamp;
+            end
+            if (tick_us & !age_full) begin
+                age <= age + 16'd1;
+            end
+            if (unconfirmed & confirm) begin
+                age <= 16'd0;
+            end
             // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look young.
             age_full <= &age;
-            cause_held <= cause_held_next;
-            flags_held <= flags_held_next;
-            received <= received_next;
-            computed <= computed_next;
         end
     end
 

@@ -82,44 +82,27 @@ module s6_two_channel_stream (
     wire  [15:0] buffer_waiting_bytes;
     wire         buffer_ready;
     reg          collect; initial collect = 1'b0;
-    reg          collect_next;
     reg          push_on; initial push_on = 1'b0;
-    reg          push_on_next;
     reg          open; initial open = 1'b0;
-    reg          open_next;
     reg          first; initial first = 1'b0;
     reg          spoilt; initial spoilt = 1'b0;
-    reg          spoilt_next;
     reg   [15:0] sequence_value; initial sequence_value = 16'd0;
-    reg   [15:0] sequence_next;
     reg   [31:0] moment; initial moment = 32'd0;
-    reg   [31:0] moment_next;
     reg   [15:0] sequence_taken; initial sequence_taken = 16'd0;
-    reg   [15:0] sequence_taken_next;
     reg   [31:0] moment_taken; initial moment_taken = 32'd0;
-    reg   [31:0] moment_taken_next;
     reg    [7:0] lost_taken; initial lost_taken = 8'd0;
-    reg    [7:0] lost_taken_next;
     reg    [7:0] lost_before; initial lost_before = 8'd0;
-    reg    [7:0] lost_before_next;
     wire         lost_before_reset;
     reg   [15:0] lost_all; initial lost_all = 16'd0;
-    reg   [15:0] lost_all_next;
     wire         lost_all_reset;
     reg    [7:0] head_byte; initial head_byte = 8'd0;
-    reg    [7:0] head_byte_next;
     wire         head_byte_reset;
     reg   [23:0] state_held; initial state_held = 24'd0;
-    reg   [23:0] state_held_next;
     reg    [7:0] byte_read; initial byte_read = 8'd0;
-    reg    [7:0] byte_read_next;
     wire         byte_read_reset;
     reg          flush; initial flush = 1'b0;
-    reg          flush_next;
     reg          mid_frame; initial mid_frame = 1'b0;
-    reg          mid_frame_next;
     reg          pushing; initial pushing = 1'b0;
-    reg          pushing_next;
     wire         _unused_ok = &{1'b0, trigger_count[31:16]};
 
     s6_two_channel_frame_buffer u_buffer (
@@ -137,169 +120,20 @@ module s6_two_channel_stream (
         .take(take)
     );
 
-    always @* begin
-        moment_next = moment;
-        if (trigger) begin
-            moment_next = timestamp;
-        end
-    end
-
-    always @* begin
-        sequence_next = sequence_value;
-        if (first) begin
-            sequence_next = trigger_count[15:0];
-        end
-    end
-
-    always @* begin
-        spoilt_next = spoilt;
-        if (replaced) begin
-            spoilt_next = 1'b1;
-        end
-    end
-
-    always @* begin
-        head_byte_next = head_byte;
-        case (byte_at)
-            3'd0: begin
-                head_byte_next = HEAD;
-            end
-            3'd1: begin
-                head_byte_next = lost_taken;
-            end
-            3'd2: begin
-                head_byte_next = sequence_taken[7:0];
-            end
-            3'd3: begin
-                head_byte_next = sequence_taken[15:8];
-            end
-            3'd4: begin
-                head_byte_next = moment_taken[7:0];
-            end
-            3'd5: begin
-                head_byte_next = moment_taken[15:8];
-            end
-            3'd6: begin
-                head_byte_next = moment_taken[23:16];
-            end
-            default: begin
-                head_byte_next = moment_taken[31:24];
-            end
-        endcase
-    end
     assign wanted = open & !first & (!owes | trigger);
     assign good = buffer_room & !spoilt & !replaced;
     assign take_now = wanted & buffer_idle & good;
-
-    always @* begin
-        sequence_taken_next = sequence_taken;
-        moment_taken_next = moment_taken;
-        lost_taken_next = lost_taken;
-        if (take_now) begin
-            sequence_taken_next = sequence_value;
-            moment_taken_next = moment;
-            lost_taken_next = lost_before;
-        end
-    end
     assign lost_now = (wanted & buffer_idle & !good) | (open & trigger & (first | !buffer_idle));
-
-    always @* begin
-        open_next = open;
-        if (take_now | lost_now) begin
-            open_next = 1'b0;
-        end
-        if (trigger & collect) begin
-            open_next = 1'b1;
-        end
-    end
-
-    always @* begin
-        lost_before_next = lost_before;
-        if (lost_now & !(&lost_before)) begin
-            lost_before_next = lost_before + 8'd1;
-        end
-    end
-
-    always @* begin
-        lost_all_next = lost_all;
-        if (lost_now & !(&lost_all)) begin
-            lost_all_next = lost_all + 16'd1;
-        end
-    end
     assign take_set = take_now;
     assign head_byte_reset = |block;
     assign buffer_set_byte = head_byte | channel_byte;
     // The host's words.
     assign reads = access & selected & !write;
-
-    always @* begin
-        state_held_next = state_held;
-        // The state is that of the moment when its first byte was read.
-        if (reads & !(|lane)) begin
-            state_held_next = {lost_all[7:0], buffer_waiting_bytes};
-        end
-    end
     assign writes = access & selected & write;
-
-    always @* begin
-        collect_next = collect;
-        push_on_next = push_on;
-        if (writes & !(|word)) begin
-            collect_next = write_data[0];
-            push_on_next = write_data[1];
-        end
-    end
     assign clear = writes & (word == 2'd3) & write_data[0];
-
-    always @* begin
-        flush_next = flush;
-        if (!pushing & !(|buffer_waiting_bytes)) begin
-            flush_next = 1'b0;
-        end
-        if (clear) begin
-            flush_next = 1'b1;
-        end
-    end
     assign lost_before_reset = reset | clear | take_now;
     assign lost_all_reset = reset | clear;
     assign bus_may = buffer_ready & !push_on & !pushing & !flush;
-
-    always @* begin
-        byte_read_next = byte_read;
-        if (reads) begin
-            byte_read_next = 8'd0;
-            case (word)
-                2'd0: begin
-                    if (&lane) begin
-                        byte_read_next = {6'd0, push_on, collect};
-                    end
-                end
-                2'd1: begin
-                    case (lane)
-                        2'd0: begin
-                            byte_read_next = lost_all[15:8];
-                        end
-                        2'd1: begin
-                            byte_read_next = state_held[23:16];
-                        end
-                        2'd2: begin
-                            byte_read_next = state_held[15:8];
-                        end
-                        default: begin
-                            byte_read_next = state_held[7:0];
-                        end
-                    endcase
-                end
-                2'd2: begin
-                    if (bus_may) begin
-                        byte_read_next = push_byte;
-                    end
-                end
-                default: begin
-                end
-            endcase
-        end
-    end
     assign bus_take = reads & (word == 2'd2) & bus_may;
     assign byte_read_reset = access & !reads;
     assign read_byte = byte_read;
@@ -311,24 +145,6 @@ module s6_two_channel_stream (
     assign skip = buffer_ready & !pushing & (flush | (push_on & mid_frame));
     assign take = bus_take | push_take | skip;
     assign more = |push_byte;
-
-    always @* begin
-        mid_frame_next = mid_frame;
-        if (take) begin
-            mid_frame_next = more;
-        end
-    end
-
-    always @* begin
-        pushing_next = pushing;
-        if (push_take) begin
-            pushing_next = more;
-        end
-        // An upset: nothing is left of a frame, and answers would wait for its end for ever.
-        if (pushing & !(|buffer_waiting_bytes)) begin
-            pushing_next = 1'b0;
-        end
-    end
 
     always @(posedge clock) begin
         if (reset) begin
@@ -346,20 +162,49 @@ module s6_two_channel_stream (
             mid_frame <= 1'b0;
             pushing <= 1'b0;
         end else begin
-            collect <= collect_next;
-            push_on <= push_on_next;
-            open <= open_next;
+            if (writes & !(|word)) begin
+                collect <= write_data[0];
+                push_on <= write_data[1];
+            end
+            if (take_now | lost_now) begin
+                open <= 1'b0;
+            end
+            if (trigger & collect) begin
+                open <= 1'b1;
+            end
             // The set under way. The number of its trigger is there a cycle after the trigger.
             first <= trigger;
-            sequence_value <= sequence_next;
-            moment <= moment_next;
-            sequence_taken <= sequence_taken_next;
-            moment_taken <= moment_taken_next;
-            lost_taken <= lost_taken_next;
-            state_held <= state_held_next;
-            flush <= flush_next;
-            mid_frame <= mid_frame_next;
-            pushing <= pushing_next;
+            if (first) begin
+                sequence_value <= trigger_count[15:0];
+            end
+            if (trigger) begin
+                moment <= timestamp;
+            end
+            if (take_now) begin
+                sequence_taken <= sequence_value;
+                moment_taken <= moment;
+                lost_taken <= lost_before;
+            end
+            // The state is that of the moment when its first byte was read.
+            if (reads & !(|lane)) begin
+                state_held <= {lost_all[7:0], buffer_waiting_bytes};
+            end
+            if (!pushing & !(|buffer_waiting_bytes)) begin
+                flush <= 1'b0;
+            end
+            if (clear) begin
+                flush <= 1'b1;
+            end
+            if (take) begin
+                mid_frame <= more;
+            end
+            if (push_take) begin
+                pushing <= more;
+            end
+            // An upset: nothing is left of a frame, and answers would wait for its end for ever.
+            if (pushing & !(|buffer_waiting_bytes)) begin
+                pushing <= 1'b0;
+            end
         end
     end
 
@@ -367,7 +212,9 @@ module s6_two_channel_stream (
         if (trigger) begin
             spoilt <= 1'b0;
         end else begin
-            spoilt <= spoilt_next;
+            if (replaced) begin
+                spoilt <= 1'b1;
+            end
         end
     end
 
@@ -375,7 +222,9 @@ module s6_two_channel_stream (
         if (lost_before_reset) begin
             lost_before <= 8'd0;
         end else begin
-            lost_before <= lost_before_next;
+            if (lost_now & !(&lost_before)) begin
+                lost_before <= lost_before + 8'd1;
+            end
         end
     end
 
@@ -383,7 +232,9 @@ module s6_two_channel_stream (
         if (lost_all_reset) begin
             lost_all <= 16'd0;
         end else begin
-            lost_all <= lost_all_next;
+            if (lost_now & !(&lost_all)) begin
+                lost_all <= lost_all + 16'd1;
+            end
         end
     end
 
@@ -391,7 +242,32 @@ module s6_two_channel_stream (
         if (head_byte_reset) begin
             head_byte <= 8'd0;
         end else begin
-            head_byte <= head_byte_next;
+            case (byte_at)
+                3'd0: begin
+                    head_byte <= HEAD;
+                end
+                3'd1: begin
+                    head_byte <= lost_taken;
+                end
+                3'd2: begin
+                    head_byte <= sequence_taken[7:0];
+                end
+                3'd3: begin
+                    head_byte <= sequence_taken[15:8];
+                end
+                3'd4: begin
+                    head_byte <= moment_taken[7:0];
+                end
+                3'd5: begin
+                    head_byte <= moment_taken[15:8];
+                end
+                3'd6: begin
+                    head_byte <= moment_taken[23:16];
+                end
+                default: begin
+                    head_byte <= moment_taken[31:24];
+                end
+            endcase
         end
     end
 
@@ -399,7 +275,39 @@ module s6_two_channel_stream (
         if (byte_read_reset) begin
             byte_read <= 8'd0;
         end else begin
-            byte_read <= byte_read_next;
+            if (reads) begin
+                byte_read <= 8'd0;
+                case (word)
+                    2'd0: begin
+                        if (&lane) begin
+                            byte_read <= {6'd0, push_on, collect};
+                        end
+                    end
+                    2'd1: begin
+                        case (lane)
+                            2'd0: begin
+                                byte_read <= lost_all[15:8];
+                            end
+                            2'd1: begin
+                                byte_read <= state_held[23:16];
+                            end
+                            2'd2: begin
+                                byte_read <= state_held[15:8];
+                            end
+                            default: begin
+                                byte_read <= state_held[7:0];
+                            end
+                        endcase
+                    end
+                    2'd2: begin
+                        if (bus_may) begin
+                            byte_read <= push_byte;
+                        end
+                    end
+                    default: begin
+                    end
+                endcase
+            end
         end
     end
 

@@ -23,18 +23,10 @@ module s6_two_channel_timebase (
 
     wire         hit;
     reg    [7:0] count; initial count = 8'd0;
-    reg    [7:0] count_next;
     reg          tick; initial tick = 1'b0;
     reg   [31:0] cycles; initial cycles = 32'd0;
 
     assign hit = count == LAST_COUNT;
-
-    always @* begin
-        count_next = count + 8'd1;
-        if (hit) begin
-            count_next = 8'd0;
-        end
-    end
     assign tick_us = tick;
     assign timestamp = cycles;
 
@@ -44,7 +36,10 @@ module s6_two_channel_timebase (
             tick <= 1'b0;
             cycles <= 32'd0;
         end else begin
-            count <= count_next;
+            count <= count + 8'd1;
+            if (hit) begin
+                count <= 8'd0;
+            end
             tick <= hit;
             cycles <= cycles + 32'd1;
         end

@@ -174,10 +174,8 @@ module s6_two_channel_transaction (
     reg    [2:0] phase; initial phase = PHASE_NOT_READY;
     reg    [2:0] phase_next;
     reg   [15:0] timer; initial timer = 16'd0;
-    reg   [15:0] timer_next;
     reg   [15:0] timer_limit; initial timer_limit = 16'd0;
     reg          timer_hit; initial timer_hit = 1'b0;
-    reg          timer_hit_next;
     reg          timer_step; initial timer_step = 1'b0;
     reg          hold; initial hold = 1'b0;
     reg          start_now; initial start_now = 1'b0;
@@ -185,7 +183,6 @@ module s6_two_channel_transaction (
     reg          extra; initial extra = 1'b0;
     reg          stop_now; initial stop_now = 1'b1;
     reg          is_calibrated; initial is_calibrated = 1'b0;
-    reg          is_calibrated_next;
     reg          acquiring; initial acquiring = 1'b0;
     reg          acquiring_next;
     reg          slow_now; initial slow_now = 1'b0;
@@ -201,11 +198,8 @@ module s6_two_channel_transaction (
     reg          was_hunting; initial was_hunting = 1'b0;
     reg          was_center; initial was_center = 1'b0;
     reg          cleared; initial cleared = 1'b1;
-    reg          cleared_next;
     reg          high_at_tick; initial high_at_tick = 1'b0;
-    reg          high_at_tick_next;
     reg          owing; initial owing = 1'b0;
-    reg          owing_next;
     reg          measuring; initial measuring = 1'b0;
     reg          measuring_next;
     reg          once_more; initial once_more = 1'b0;
@@ -282,7 +276,6 @@ module s6_two_channel_transaction (
         recovery_next = recovery;
         answered_next = answered;
         under_way_next = under_way;
-        timer_next = timer;
         once_more_next = once_more;
         measuring_next = measuring;
         proof = 1'b0;
@@ -479,23 +472,6 @@ module s6_two_channel_transaction (
             answered_next = 1'b0;
             under_way_next = 1'b0;
         end
-        if (timer_step) begin
-            timer_next = timer + 16'd1;
-        end
-        // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
-        timer_hit_next = (timer >= timer_limit) & !cleared;
-        cleared_next = timer_clear | accept | rise_back;
-        // With the cycles that pass before the timer sees the beginning of its span; a frame that is given up has another one.
-        if (rise_back) begin
-            timer_next = 16'd2;
-        end
-        if (timer_clear) begin
-            timer_next = 16'd0;
-            timer_hit_next = 1'b0;
-        end
-        if (accept) begin
-            timer_next = 16'd2;
-        end
         // What else becomes of that frame is the trigger's result, not something that comes behind it.
         if (verdict_once_more) begin
             once_more_next = 1'b1;
@@ -519,49 +495,12 @@ module s6_two_channel_transaction (
         end
     end
 
-    always @* begin
-        owing_next = owing;
-        if (publish | refuse) begin
-            owing_next = 1'b0;
-        end
-        if (accept) begin
-            owing_next = 1'b1;
-        end
-    end
     // Of a frame that measured nothing has been published.
     assign verdict_is_late = answered & !verdict_once_more;
     // Triggers that are lost, and the result that is owed.
     assign lost = trigger & ((!accept & !idle) | owing);
-
-    always @* begin
-        // Whether the delay has to be measured again.
-        high_at_tick_next = high_at_tick & level;
-        if (tick_us) begin
-            high_at_tick_next = level;
-        end
-    end
     // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
     assign afresh = calibrate | plugged;
-
-    always @* begin
-        is_calibrated_next = is_calibrated;
-        // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
-        if (aborts) begin
-            is_calibrated_next = 1'b0;
-        end
-        // Whether the propagation delay is known.
-        // The mean over several frames, if it is taken; the last of them makes the delay known.
-        if (verdict_is_received & measuring) begin
-            is_calibrated_next = 1'b1;
-        end
-        // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
-        if (verdict_is_doubtful) begin
-            is_calibrated_next = 1'b0;
-        end
-        if (afresh) begin
-            is_calibrated_next = 1'b0;
-        end
-    end
     assign run = run_now;
     assign start = start_now;
     // Taking the start bit ends its cell; started comes when the comparison knows that.
@@ -609,9 +548,24 @@ module s6_two_channel_transaction (
             once_more <= 1'b0;
             under_way <= 1'b0;
         end else begin
-            timer <= timer_next;
+            if (timer_step) begin
+                timer <= timer + 16'd1;
+            end
+            // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
+            timer_hit <= (timer >= timer_limit) & !cleared;
+            cleared <= timer_clear | accept | rise_back;
+            // With the cycles that pass before the timer sees the beginning of its span; a frame that is given up has another one.
+            if (rise_back) begin
+                timer <= 16'd2;
+            end
+            if (timer_clear) begin
+                timer <= 16'd0;
+                timer_hit <= 1'b0;
+            end
+            if (accept) begin
+                timer <= 16'd2;
+            end
             timer_limit <= limit;
-            timer_hit <= timer_hit_next;
             timer_step <= !in_us | tick_us;
             hold <= (phase == PHASE_FIRST_LOW) | last_edge_holds;
             start_now <= accept;
@@ -619,7 +573,22 @@ module s6_two_channel_transaction (
             run_now <= running;
             extra <= |first_low_extra_cycles;
             stop_now <= !running | aborts;
-            is_calibrated <= is_calibrated_next;
+            // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
+            if (aborts) begin
+                is_calibrated <= 1'b0;
+            end
+            // Whether the propagation delay is known.
+            // The mean over several frames, if it is taken; the last of them makes the delay known.
+            if (verdict_is_received & measuring) begin
+                is_calibrated <= 1'b1;
+            end
+            // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
+            if (verdict_is_doubtful) begin
+                is_calibrated <= 1'b0;
+            end
+            if (afresh) begin
+                is_calibrated <= 1'b0;
+            end
             acquiring <= acquiring_next;
             slow_now <= slow_now_next;
             tail_sampled <= tail_sampled_next;
@@ -629,9 +598,17 @@ module s6_two_channel_transaction (
             // Time-outs, each counted from the beginning of its span.
             was_hunting <= hunting;
             was_center <= center;
-            cleared <= cleared_next;
-            high_at_tick <= high_at_tick_next;
-            owing <= owing_next;
+            // Whether the delay has to be measured again.
+            high_at_tick <= high_at_tick & level;
+            if (tick_us) begin
+                high_at_tick <= level;
+            end
+            if (publish | refuse) begin
+                owing <= 1'b0;
+            end
+            if (accept) begin
+                owing <= 1'b1;
+            end
             measuring <= measuring_next;
             once_more <= once_more_next;
             under_way <= under_way_next;

@@ -43,31 +43,12 @@ module s6_two_channel_trigger (
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync2; initial sync2 = 1'b1;
     reg   [23:0] timer; initial timer = 24'd2;
-    reg   [23:0] timer_next;
     reg          timer_hit_low; initial timer_hit_low = 1'b0;
-    reg          timer_hit_low_next;
     reg          timer_hit_high; initial timer_hit_high = 1'b0;
     reg          strobe; initial strobe = 1'b0;
     reg   [31:0] count; initial count = 32'd0;
-    reg   [31:0] count_next;
 
-    always @* begin
-        count_next = count;
-        if (strobe) begin
-            count_next = count + 32'd1;
-        end
-    end
     assign timer_hit = timer_hit_low & timer_hit_high;
-
-    always @* begin
-        timer_hit_low_next = timer[11:0] == period_cycles[11:0];
-        timer_next = timer + 24'd1;
-        // Restarts while disabled: the first period is a whole one.
-        if (timer_hit | !sources[1]) begin
-            timer_next = TIMER_FIRST;
-            timer_hit_low_next = 1'b0;
-        end
-    end
     assign pin_hit = sync1 & !sync2;
     assign hit = {register, timer_hit, pin_hit} & sources;
     assign trigger = strobe;
@@ -87,11 +68,18 @@ module s6_two_channel_trigger (
             sync0 <= pin;
             sync1 <= sync0;
             sync2 <= sync1;
-            timer <= timer_next;
-            timer_hit_low <= timer_hit_low_next;
+            timer_hit_low <= timer[11:0] == period_cycles[11:0];
+            timer <= timer + 24'd1;
+            // Restarts while disabled: the first period is a whole one.
+            if (timer_hit | !sources[1]) begin
+                timer <= TIMER_FIRST;
+                timer_hit_low <= 1'b0;
+            end
             timer_hit_high <= timer[23:12] == period_cycles[23:12];
             strobe <= |hit;
-            count <= count_next;
+            if (strobe) begin
+                count <= count + 32'd1;
+            end
         end
     end
 endmodule

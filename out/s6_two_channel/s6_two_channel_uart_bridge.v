@@ -120,13 +120,9 @@ module s6_two_channel_uart_bridge (
     reg    [1:0] byte_lane; initial byte_lane = 2'd0;
     reg    [1:0] byte_lane_next;
     reg   [31:0] data; initial data = 32'd0;
-    reg   [31:0] data_next;
     reg    [7:0] next_byte; initial next_byte = 8'd0;
-    reg    [7:0] next_byte_next;
     reg          has_byte; initial has_byte = 1'b0;
-    reg          has_byte_next;
     reg          write_busy; initial write_busy = 1'b0;
-    reg          write_busy_next;
     reg          sent; initial sent = 1'b0;
     reg          word_end; initial word_end = 1'b0;
     reg          word_end_next;
@@ -138,11 +134,8 @@ module s6_two_channel_uart_bridge (
     reg          access_next_next;
     reg          access_now; initial access_now = 1'b0;
     reg          byte_ready; initial byte_ready = 1'b0;
-    reg          byte_ready_next;
     reg   [16:0] idle_us; initial idle_us = 17'd0;
-    reg   [16:0] idle_us_next;
     reg          expired; initial expired = 1'b0;
-    reg          expired_next;
     reg          stop_timer; initial stop_timer = 1'b0;
     reg          stop_timer_next;
     reg          marked; initial marked = 1'b0;
@@ -167,28 +160,6 @@ module s6_two_channel_uart_bridge (
         .tx(tx)
     );
 
-    always @* begin
-        write_busy_next = write_busy;
-        // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
-        if (access_now & writing) begin
-            write_busy_next = 1'b1;
-        end
-        if (done) begin
-            write_busy_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        idle_us_next = idle_us;
-        expired_next = idle_us == TIMEOUT_US;
-        if (tick_us) begin
-            idle_us_next = idle_us + 17'd1;
-        end
-        if (stop_timer | expired) begin
-            idle_us_next = 17'd0;
-            expired_next = 1'b0;
-        end
-    end
     // A frame that has begun goes first; none begins while an answer is due.
     assign from_stream = in_frame | (state != BRIDGE_STATE_READ);
 
@@ -203,20 +174,9 @@ module s6_two_channel_uart_bridge (
             transmitter_valid = push_valid;
         end
     end
+
     assign push_take = transmitter_accept & from_stream;
     assign answer_sent = transmitter_accept & !from_stream & !marker;
-
-    always @* begin
-        byte_ready_next = byte_ready;
-        // What ends a command before its time.
-        if (done & (state == BRIDGE_STATE_READ)) begin
-            byte_ready_next = 1'b1;
-        end
-        // What is left of an answer that was given up is not the beginning of the next one.
-        if (answer_sent | (state != BRIDGE_STATE_READ)) begin
-            byte_ready_next = 1'b0;
-        end
-    end
     // What a cycle begins with.
     assign last_lane = &byte_lane;
     assign high_bits = |receiver_data;
@@ -371,26 +331,8 @@ module s6_two_channel_uart_bridge (
             state_next = BRIDGE_STATE_COMMAND;
         end
     end
+
     assign data_moves = has_byte & !write_busy;
-
-    always @* begin
-        has_byte_next = has_byte;
-        next_byte_next = next_byte;
-        if (data_moves) begin
-            has_byte_next = 1'b0;
-        end
-        if (receiver_strobe & (state == BRIDGE_STATE_WRITE)) begin
-            next_byte_next = receiver_data;
-            has_byte_next = 1'b1;
-        end
-    end
-
-    always @* begin
-        data_next = data;
-        if (data_moves | take_byte) begin
-            data_next = {data[23:0], next_byte};
-        end
-    end
     // The access.
     assign word_address = address;
     assign in_range = !out_of_range;
@@ -434,10 +376,23 @@ module s6_two_channel_uart_bridge (
             address <= address_next;
             out_of_range <= out_of_range_next;
             byte_lane <= byte_lane_next;
-            data <= data_next;
-            next_byte <= next_byte_next;
-            has_byte <= has_byte_next;
-            write_busy <= write_busy_next;
+            if (data_moves | take_byte) begin
+                data <= {data[23:0], next_byte};
+            end
+            if (data_moves) begin
+                has_byte <= 1'b0;
+            end
+            if (receiver_strobe & (state == BRIDGE_STATE_WRITE)) begin
+                next_byte <= receiver_data;
+                has_byte <= 1'b1;
+            end
+            // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
+            if (access_now & writing) begin
+                write_busy <= 1'b1;
+            end
+            if (done) begin
+                write_busy <= 1'b0;
+            end
             sent <= answer_sent;
             word_end <= word_end_next;
             // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
@@ -446,9 +401,22 @@ module s6_two_channel_uart_bridge (
             step_address <= step_address_next;
             access_next <= access_next_next;
             access_now <= access_next;
-            byte_ready <= byte_ready_next;
-            idle_us <= idle_us_next;
-            expired <= expired_next;
+            // What ends a command before its time.
+            if (done & (state == BRIDGE_STATE_READ)) begin
+                byte_ready <= 1'b1;
+            end
+            // What is left of an answer that was given up is not the beginning of the next one.
+            if (answer_sent | (state != BRIDGE_STATE_READ)) begin
+                byte_ready <= 1'b0;
+            end
+            expired <= idle_us == TIMEOUT_US;
+            if (tick_us) begin
+                idle_us <= idle_us + 17'd1;
+            end
+            if (stop_timer | expired) begin
+                idle_us <= 17'd0;
+                expired <= 1'b0;
+            end
             stop_timer <= stop_timer_next;
             marked <= marked_next;
             marker <= marker_next;

@@ -32,19 +32,12 @@ module s6_two_channel_uart_receiver (
     reg          sync1; initial sync1 = 1'b1;
     reg          previous; initial previous = 1'b1;
     reg          active; initial active = 1'b0;
-    reg          active_next;
     reg          in_start_bit; initial in_start_bit = 1'b0;
-    reg          in_start_bit_next;
     reg   [14:0] count; initial count = 15'd0;
-    reg   [14:0] count_next;
     reg          sample; initial sample = 1'b0;
-    reg          sample_next;
     reg    [9:0] shift; initial shift = 10'h200;
-    reg    [9:0] shift_next;
     reg          good; initial good = 1'b0;
-    reg          good_next;
     reg          bad; initial bad = 1'b0;
-    reg          bad_next;
 
     always @* begin
         limit = LAST_COUNT;
@@ -52,43 +45,9 @@ module s6_two_channel_uart_receiver (
             limit = MIDDLE_COUNT;
         end
     end
+
     assign hit = count == limit;
-
-    always @* begin
-        count_next = count + 15'd1;
-        if (hit | !active) begin
-            count_next = 15'd0;
-        end
-    end
     assign shifted = {sync1, shift[9:1]};
-
-    always @* begin
-        in_start_bit_next = in_start_bit;
-        shift_next = shift;
-        active_next = active;
-        sample_next = hit & active;
-        good_next = 1'b0;
-        bad_next = 1'b0;
-        if (sample) begin
-            in_start_bit_next = 1'b0;
-            shift_next = shifted;
-            if (in_start_bit & sync1) begin
-                active_next = 1'b0;
-            end
-            if (shift[0]) begin
-                active_next = 1'b0;
-                good_next = sync1;
-                bad_next = !sync1;
-            end
-        end
-        if (!active) begin
-            shift_next = MARKER;
-            sample_next = 1'b0;
-            // An edge, not a level: a line held low is not a row of start bits.
-            active_next = previous & !sync1;
-            in_start_bit_next = 1'b1;
-        end
-    end
     assign data = shift[8:1];
     assign strobe = good;
     assign framing_error = bad;
@@ -109,13 +68,32 @@ module s6_two_channel_uart_receiver (
             sync0 <= rx;
             sync1 <= sync0;
             previous <= sync1;
-            active <= active_next;
-            in_start_bit <= in_start_bit_next;
-            count <= count_next;
-            sample <= sample_next;
-            shift <= shift_next;
-            good <= good_next;
-            bad <= bad_next;
+            sample <= hit & active;
+            good <= 1'b0;
+            bad <= 1'b0;
+            if (sample) begin
+                in_start_bit <= 1'b0;
+                shift <= shifted;
+                if (in_start_bit & sync1) begin
+                    active <= 1'b0;
+                end
+                if (shift[0]) begin
+                    active <= 1'b0;
+                    good <= sync1;
+                    bad <= !sync1;
+                end
+            end
+            if (!active) begin
+                shift <= MARKER;
+                sample <= 1'b0;
+                // An edge, not a level: a line held low is not a row of start bits.
+                active <= previous & !sync1;
+                in_start_bit <= 1'b1;
+            end
+            count <= count + 15'd1;
+            if (hit | !active) begin
+                count <= 15'd0;
+            end
         end
     end
 

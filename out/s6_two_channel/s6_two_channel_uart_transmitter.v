@@ -25,32 +25,13 @@ module s6_two_channel_uart_transmitter (
     wire         hit;
     wire         take;
     reg   [14:0] count; initial count = 15'd0;
-    reg   [14:0] count_next;
     reg          bit_end; initial bit_end = 1'b0;
     reg    [9:0] shift; initial shift = 10'd1;
-    reg    [9:0] shift_next;
     reg          empty; initial empty = 1'b1;
 
     // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
     assign hit = count == LAST_COUNT;
-
-    always @* begin
-        count_next = count + 15'd1;
-        if (hit) begin
-            count_next = 15'd0;
-        end
-    end
     assign take = bit_end & empty & valid;
-
-    always @* begin
-        shift_next = shift;
-        if (bit_end & !empty) begin
-            shift_next = {1'b0, shift[9:1]};
-        end
-        if (take) begin
-            shift_next = {1'b0, data, 1'b0} | STOP_BIT;
-        end
-    end
     assign accept = take;
     assign tx = shift[0];
 
@@ -61,9 +42,17 @@ module s6_two_channel_uart_transmitter (
             shift <= 10'd1;
             empty <= 1'b1;
         end else begin
-            count <= count_next;
+            count <= count + 15'd1;
+            if (hit) begin
+                count <= 15'd0;
+            end
             bit_end <= hit;
-            shift <= shift_next;
+            if (bit_end & !empty) begin
+                shift <= {1'b0, shift[9:1]};
+            end
+            if (take) begin
+                shift <= {1'b0, data, 1'b0} | STOP_BIT;
+            end
             // Only the stop bit is left, and it stays until there is something to send.
             empty <= !(|shift[9:1]);
         end

@@ -94,21 +94,17 @@ module s6_two_channel_verdict (
     reg          refused; initial refused = 1'b0;
     reg          ended; initial ended = 1'b0;
     reg          overrun; initial overrun = 1'b0;
-    reg          overrun_next;
     reg          was_bad; initial was_bad = 1'b0;
-    reg          was_bad_next;
     reg          publish_now; initial publish_now = 1'b0;
     reg          good_now; initial good_now = 1'b0;
     reg          once_more_now; initial once_more_now = 1'b0;
     reg          pending; initial pending = 1'b0;
-    reg          pending_next;
     reg          withdraw_now; initial withdraw_now = 1'b0;
     reg          confirm_now; initial confirm_now = 1'b0;
     reg          late_now; initial late_now = 1'b0;
     reg          over_now; initial over_now = 1'b0;
     reg          lost_now; initial lost_now = 1'b0;
     reg   [19:0] flags_now; initial flags_now = 20'd0;
-    reg   [19:0] flags_now_next;
 
     s6_two_channel_primary_cause u_chooser (
         .flags(flags_now),
@@ -116,26 +112,9 @@ module s6_two_channel_verdict (
     );
 
     assign crc_bad = !(crc_ok & stored_ok);
-
-    always @* begin
-        was_bad_next = was_bad;
-        if (taken_now) begin
-            was_bad_next = crc_bad;
-        end
-    end
     assign bad_now = crc_bad | f1 | !f2;
     assign is_pending = pending | taken_now;
     assign proven = prove & is_pending;
-
-    always @* begin
-        pending_next = pending;
-        if (taken_now) begin
-            pending_next = 1'b1;
-        end
-        if (proven | gave_up_now) begin
-            pending_next = 1'b0;
-        end
-    end
     assign measured = proven & is_measuring & !bad_now;
 
     always @* begin
@@ -160,20 +139,6 @@ module s6_two_channel_verdict (
         end
     end
 
-    always @* begin
-        flags_now_next = flags_now;
-        overrun_next = overrun;
-        if (proven | gave_up_now | refused) begin
-            flags_now_next = found_all;
-            // What ends a frame that measures is told to nobody.
-            if (!measured) begin
-                overrun_next = 1'b0;
-            end
-        end
-        if (lost) begin
-            overrun_next = 1'b1;
-        end
-    end
     assign is_received = taken_now & !crc_bad;
     assign is_doubtful = taken_now & crc_bad & was_bad;
     assign taken = taken_now;
@@ -216,19 +181,34 @@ module s6_two_channel_verdict (
             gave_up_late <= give_up & !gave_up_now & is_late;
             refused <= refuse;
             ended <= normal_end;
-            overrun <= overrun_next;
-            was_bad <= was_bad_next;
+            if (proven | gave_up_now | refused) begin
+                flags_now <= found_all;
+                // What ends a frame that measures is told to nobody.
+                if (!measured) begin
+                    overrun <= 1'b0;
+                end
+            end
+            if (lost) begin
+                overrun <= 1'b1;
+            end
+            if (taken_now) begin
+                was_bad <= crc_bad;
+            end
             publish_now <= (proven & !measured) | refused | (gave_up_now & !gave_up_late);
             good_now <= proven & !bad_now;
             once_more_now <= measured;
-            pending <= pending_next;
+            if (taken_now) begin
+                pending <= 1'b1;
+            end
+            if (proven | gave_up_now) begin
+                pending <= 1'b0;
+            end
             withdraw_now <= gave_up_late;
             confirm_now <= ended;
             late_now <= gave_up_late;
             // over comes with cause and flags of whatever ended the frame.
             over_now <= ended | gave_up_now | refused;
             lost_now <= lost;
-            flags_now <= flags_now_next;
         end
     end
 
