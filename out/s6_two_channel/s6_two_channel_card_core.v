@@ -34,7 +34,8 @@ module s6_two_channel_card_core (
     input  wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     input  wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
+    // nothing.
     input  wire         access,
     // With access: write a word; low = read a byte.
     input  wire         write,

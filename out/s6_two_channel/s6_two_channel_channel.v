@@ -13,11 +13,10 @@
 //                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
 //
 // With requests the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
-// has a frame of its own. AddInfo keeps the record of the additional data that follow each position.
-//
-// The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and
-// measures the propagation delay; all others run at the configured clock. Settings stay as they are while busy and in the cycle of a trigger. With guards a frame
-// takes a copy of them, and a setting that changes under way makes its position invalid.
+// has a frame of its own. A separate block keeps the record of the additional data that follow each position.
+// The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and measures the
+// propagation delay; all others run at the configured clock. Settings stay as they are while busy and in the cycle of a trigger.
+// With guards a frame takes a copy of them, and a setting that changes under way makes its position invalid.
 module s6_two_channel_channel (
     // System clock.
     input  wire         clock,
@@ -77,7 +76,8 @@ module s6_two_channel_channel (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // T-format.
     output wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
@@ -421,7 +421,8 @@ module s6_two_channel_channel (
     end
     always @* `FORMAL_LABEL(frame_is_driven) assert (!transaction_run | (!transaction_is_at_rest & busy));
     always @* `FORMAL_LABEL(positions_only) assert (!transaction_start | frame_own | f_bare | f_rides);
-    // inputs: settings stay while the channel is busy and in the cycle of a trigger; every other input may be anything in every cycle
+    // inputs: settings stay while the channel is busy and in the cycle of a trigger; every other input may be anything in every
+    // cycle
     wire [68:0] f_settings = {period_cycles, first_low_extra_cycles, command, position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles};
     reg  [68:0] f_before;
     reg f_stay; initial f_stay = 1'b0;

@@ -8,10 +8,9 @@
 //
 // channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
 // ring block of the channel --(ring stands still, channel not busy, no trigger)--> configuration of the channel
-//
-// The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. What stands for longer
-// than a trigger says so: the age counts the time that the words are held, stale a trigger that has come since. A byte that is not selected
-// is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
+// The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. What stands for
+// longer than a trigger says so: the age counts the time that the words are held, stale a trigger that has come since. A byte that
+// is not selected is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
 module s6_two_channel_channel_registers (
     // System clock.
     input  wire         clock,
@@ -47,7 +46,8 @@ module s6_two_channel_channel_registers (
     input  wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     input  wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // T-format.
     input  wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
     input  wire   [5:0] position_width,

@@ -17,8 +17,8 @@
 //
 // The encoder has one clock, from F1 to F2, to release the line before the driver is switched on.
 //
-// Ref: DRIVER_ON_FALL, FIRST_COMMAND_FALL, DRIVER_OFF_FALL,
-// SUPPLEMENT_ZEROS.
+// Ref: HEIDENHAIN PWM 20 user's manual (driver on at F2); TI motor-control SDK (first command bit at F3, 7 LOW bits before the
+// start bit of a supplement).
 module s6_two_channel_command_sender (
     // System clock.
     input  wire         clock,
@@ -79,7 +79,8 @@ module s6_two_channel_command_sender (
     localparam         HAS_ALL = 1'b0;
     wire [4:0] bits_left = 5'd0;
     wire [0:0] in_supplement = 1'd0;
-    // driver_window: DATA is driven only between the second and the ninth falling edge of CLOCK in a frame; further only for a parameter.
+    // driver_window: DATA is driven only between the second and the ninth falling edge of CLOCK in a frame; further only for a
+    // parameter.
     // command_as_asked: DATA is LOW in the cell before the mode command, and then its six bits, the most significant first.
     reg [5:0] f_falls; initial f_falls = 6'd0;
     always @(posedge clock) begin

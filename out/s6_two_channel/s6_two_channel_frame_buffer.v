@@ -12,9 +12,9 @@
 //                                                  start of frame ^  written ^        ^ read
 // RAM   .... frame frame | n  b  b  b  n  b ...                                  take-+
 //            ^ read_at     ^ start_at    ^ code_at: kept for the distance to the next zero
-//
-// The place of the next code byte is kept free and written when the zero is met. A reader sees the frame only when its end is written:
-// start_at is taken forward over all of it at once. A byte takes 16 cycles: one for each bit of the CRC, and time for the rest.
+// The place of the next code byte is kept free and written when the zero is met. A reader sees the frame only when its end is
+// written: start_at is taken forward over all of it at once. A byte takes 16 cycles: one for each bit of the CRC, and time for the
+// rest.
 //
 // Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
 module s6_two_channel_frame_buffer (
@@ -171,7 +171,8 @@ module s6_two_channel_frame_buffer (
             end
             used <= (start_at - read_at) & MASK;
             fits <= used <= MOST_USED;
-            // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after that.
+            // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after
+            // that.
             took <= take;
         end
     end
@@ -231,9 +232,11 @@ module s6_two_channel_frame_buffer (
 `endif
 `ifndef FORMAL_ANY_STATE
     localparam         HAS_OTHER_FRAMES = 1'b0;
-    // crc16_as_sent: The two bytes behind a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
+    // crc16_as_sent: The two bytes behind a set are its CRC-16, equal to one that is computed apart from it over the bytes as they
+    // were written.
     // whole_frames_only: What may be read ends with a frame: its end moves only when the last byte of a frame has been written.
-    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it beside the bytes that wait.
+    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it
+    // beside the bytes that wait.
     reg [15:0] f_crc; initial f_crc = 16'hffff;
     reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
     wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;

@@ -11,9 +11,8 @@
 // in_tail    _________/~~~\______    double edge: the answer has been worked upon, some cells later
 // comes      ____________/\______    here the timer begins
 // ago_cycles             2           with what has passed
-//
-// Never are more pulses on the cable than the answer needs: where all are sent before it has begun, CLOCK is held LOW, and the edge comes a cell
-// later.
+// Never are more pulses on the cable than the answer needs: where all are sent before it has begun, CLOCK is held LOW, and the edge
+// comes a cell later.
 module s6_two_channel_last_edge (
     // System clock.
     input  wire         clock,

@@ -27,7 +27,8 @@ module s6_two_channel_line_delay (
     input  wire         run,
     // The clock waits: when the cells of all pulses that were sent have ended, a new burst begins.
     input  wire         drain,
-    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another clock.
+    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another
+    // clock.
     input  wire         last_cell,
     // No clock pulse has been sent whose cell has not ended.
     input  wire         none_under_way,
@@ -172,7 +173,8 @@ module s6_two_channel_line_delay (
             since_rise <= since_rise + 11'd1;
             if (first_rise) begin
                 timing_armed <= 1'b1;
-                // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles earlier.
+                // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles
+                // earlier.
                 since_rise <= 11'd3;
                 if (acquire) begin
                     since_rise <= 11'd1;

@@ -9,13 +9,12 @@
 // field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
 // sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
 // align     __________________________________________/~~~~\____________________
-//
 // The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
-// with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word before
-// that: at all four places its last bit has the same distance from a multiple of 15.
-// left counts cells down to the end of the frame, to_send the clock pulses that they need: the difference is under way. The
-// clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
-// shortest answer while its start bit may still be on the cable.
+// with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word
+// before that: at all four places its last bit has the same distance from a multiple of 15. left counts cells down to the end of
+// the frame, to_send the clock pulses that they need: the difference is under way. The clock generator stops when none is to be
+// sent: so the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit may
+// still be on the cable.
 module s6_two_channel_receiver (
     // System clock.
     input  wire         clock,
@@ -449,7 +448,8 @@ module s6_two_channel_receiver (
             align_first <= take_crc;
             last_taken <= last_taken_next;
             done_now <= is_taken;
-            // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
+            // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the
+            // cause's path.
             used <= all_sent & (left == 7'd1);
             ended <= all_sent & none_under_way;
             crc_equal <= crc_fits;
@@ -483,9 +483,11 @@ module s6_two_channel_receiver (
     wire [0:0] low_separator = 1'd0;
     wire [0:0] separator_then = 1'd0;
     wire [0:0] new_block = 1'd0;
-    // crc_as_received: The CRC of a frame that is all position is found right exactly if it is what a serial register makes of the bits as sampled, at every width and command.
+    // crc_as_received: The CRC of a frame that is all position is found right exactly if it is what a serial register makes of the
+    // bits as sampled, at every width and command.
     // error_bits_as_received: F1, and F2 of EnDat 2.2, are the first samples after the start bit of a frame that is all position.
-    // bits_counted: A frame that is all position is whole after F1, F2, as many position bits as were set and five CRC bits: no sample more or less.
+    // bits_counted: A frame that is all position is whole after F1, F2, as many position bits as were set and five CRC bits: no
+    // sample more or less.
     reg f_same; initial f_same = 1'b0;
     reg f_open; initial f_open = 1'b0;
     reg f_whole; initial f_whole = 1'b0;

@@ -12,16 +12,14 @@
 //        trigger count -----+
 //        ring byte ---------OR--> read_byte
 //        results of channels+
-//
-// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and stand until
-// done; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
-//
-// Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them, and not from
-// the first to the last result of a trigger: half of it is new, the other half is not.
-//
-// The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it would have no
-// end. For a host that reads in step with the triggers, so that there never is a moment between two reads in which the words may follow,
-// they follow as the read begins, if the second trigger has come by then. See docs/host-link.md.
+// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and stand
+// until done; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address
+// reads something else.
+// Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them,
+// and not from the first to the last result of a trigger: half of it is new, the other half is not.
+// The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it
+// would have no end. For a host that reads in step with the triggers, so that there never is a moment between two reads in which
+// the words may follow, they follow as the read begins, if the second trigger has come by then. See docs/host-link.md.
 module s6_two_channel_register_bank (
     // System clock.
     input  wire         clock,
@@ -33,7 +31,8 @@ module s6_two_channel_register_bank (
     input  wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     input  wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
+    // nothing.
     input  wire         access,
     // With access: write a word; low = read a byte.
     input  wire         write,
@@ -170,8 +169,8 @@ module s6_two_channel_register_bank (
     assign starts = access & !busy;
     assign begins = starts;
     assign address = held_address;
-    // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
-    // They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
+    // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its
+    // own. They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
     assign whole_turn = config_page;
     assign block_end = byte_at == 4'd11;
 
@@ -449,7 +448,8 @@ module s6_two_channel_register_bank (
 `endif
 `ifndef FORMAL_ANY_STATE
     // read_is_one_moment: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
-    // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins, whatever other channels owe.
+    // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins,
+    // whatever other channels owe.
     reg [1:0] f_came; initial f_came = 2'd0;
     always @(posedge clock) begin
         if (taken & (load | (f_came != 2'd2))) f_came <= load ? 2'd1 : f_came + 2'd1;

@@ -9,9 +9,9 @@
 // trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
 //                     ^   |                 ^
 // result strobe ------+---+-- owes nothing: the set may be closed
-//
-// Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
-// be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
+// Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own,
+// one of them may be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty
+// place in the next one.
 module s6_two_channel_set_channel_number_2 (
     // System clock.
     input  wire         clock,

@@ -34,7 +34,7 @@ module s6_two_channel_snapshot (
     input  wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     input  wire   [4:0] cause_told,
-    // Raw flags, see flag.
+    // Raw flags, one bit for each fault; bits as in the register map.
     input  wire  [19:0] flags_told,
     // Position of the frame.
     input  wire  [47:0] position_in,
@@ -68,7 +68,8 @@ module s6_two_channel_snapshot (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // T-format.
     output wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
@@ -200,7 +201,8 @@ module s6_two_channel_snapshot (
             if (unconfirmed & confirm) begin
                 age <= 16'd0;
             end
-            // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look young.
+            // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look
+            // young.
             age_full <= &age;
         end
     end
@@ -217,8 +219,10 @@ module s6_two_channel_snapshot (
     // one_set: Position, its width, CRC, F2 and time change together, and only with a good result, or back when that was withdrawn.
     // one_number_each: Each result has the next number, and nothing else changes it.
     // bad_is_not_fresh: A result without good position leaves the position, and says that it is an earlier one.
-    // faults_with_results: Cause and flags change only with a result, a fault after it, or when the stored position was found changed.
-    // restored unless NEVER_WITHDRAWS (positions that are never withdrawn): A position that is withdrawn before the next frame gives way to the last good one, with its time, or to none if there was none; where that is not kept, no position is valid.
+    // faults_with_results: Cause and flags change only with a result, a fault after it, or when the stored position was found
+    // changed.
+    // restored unless NEVER_WITHDRAWS (positions that are never withdrawn): A position that is withdrawn before the next frame
+    // gives way to the last good one, with its time, or to none if there was none; where that is not kept, no position is valid.
     reg f_past_valid; initial f_past_valid = 1'b0;
     wire [91:0] f_set = {held, held_crc, held_width, held_f2, stamp};
     always @(posedge clock) begin

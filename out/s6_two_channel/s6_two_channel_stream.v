@@ -11,9 +11,8 @@
 // SetChannel 0, 1, ... (owes, replaced; byte of the closed set) ------------------------------- byte --> FrameBuffer
 //                                                                                                            |
 // host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
-//
-// What a set and a frame look like is told in docs/stream.md. A set that is closed is taken whole in one cycle, then written in its own
-// time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
+// What a set and a frame look like is told in docs/stream.md. A set that is closed is taken whole in one cycle, then written in its
+// own time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 module s6_two_channel_stream (
     // System clock.
     input  wire         clock,

@@ -12,10 +12,9 @@
 // done      _______________________________________________/\_________________________
 //
 // With a supplement the clock stays LOW after the last CRC bit (Park), and Frame goes on until its cells are over.
-//
-// A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame at the full
-// clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by own, for a request that needs the line for
-// itself. What becomes of the first is published; what becomes of either is told with over.
+// A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The
+// frame at the full clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by own, for a
+// request that needs the line for itself. What becomes of the first is published; what becomes of either is told with over.
 //
 // Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
 // off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
@@ -85,7 +84,8 @@ module s6_two_channel_transaction (
     output wire         run,
     // The clock waits: when the cells of all pulses that were sent have ended, a new burst begins.
     output wire         drain,
-    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another clock.
+    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another
+    // clock.
     output wire         last_cell,
     // This frame runs at the calibration clock.
     output wire         slow,
@@ -107,7 +107,7 @@ module s6_two_channel_transaction (
     output wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     output wire   [4:0] cause_told,
-    // Raw flags, see flag.
+    // Raw flags, one bit for each fault; bits as in the register map.
     output wire  [19:0] flags_told,
     // No frame is under way, and all that there is to tell of the last one has been told.
     output wire         is_at_rest,
@@ -551,7 +551,8 @@ module s6_two_channel_transaction (
             if (timer_step) begin
                 timer <= timer + 16'd1;
             end
-            // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
+            // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its
+            // timer.
             timer_hit <= (timer >= timer_limit) & !cleared;
             cleared <= timer_clear | accept | rise_back;
             // With the cycles that pass before the timer sees the beginning of its span; a frame that is given up has another one.
@@ -582,7 +583,8 @@ module s6_two_channel_transaction (
             if (verdict_is_received & measuring) begin
                 is_calibrated <= 1'b1;
             end
-            // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
+            // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it
+            // is told to.
             if (verdict_is_doubtful) begin
                 is_calibrated <= 1'b0;
             end
@@ -635,7 +637,8 @@ module s6_two_channel_transaction (
     // starts_at_rest: A frame starts only when the line was ready: idle, and DATA LOW.
     // low_for_tr: The line is ready only after DATA was LOW for tR.
     // abort_pause: After an aborted frame CLOCK stays quiet for 30 ms, less three microseconds, before DATA is looked at again.
-    // one_result_per_trigger unless HAS_ALL (requests), HAS_CONTINUOUS (a clock that goes on): Every trigger has exactly one result, or is told as lost; nothing else has a result.
+    // one_result_per_trigger unless HAS_ALL (requests), HAS_CONTINUOUS (a clock that goes on): Every trigger has exactly one
+    // result, or is told as lost; nothing else has a result.
     reg f_past_valid; initial f_past_valid = 1'b0;
     reg [15:0] f_low_cycles; initial f_low_cycles = 16'd0;
     reg [15:0] f_quiet_us; initial f_quiet_us = 16'd0;
@@ -688,9 +691,12 @@ module s6_two_channel_transaction (
     end
 `endif
 `ifdef FORMAL_ANY_STATE
-    // forward_only unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A frame goes on from phase to phase and never back, whatever the registers held, but to its abort.
-    // phases_are_timed unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): Each phase has a timer that runs to the limit of this phase.
-    // phases_end unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A phase whose timer has run out ends.
+    // forward_only unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A frame goes on
+    // from phase to phase and never back, whatever the registers held, but to its abort.
+    // phases_are_timed unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): Each phase has
+    // a timer that runs to the limit of this phase.
+    // phases_end unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A phase whose timer
+    // has run out ends.
     function [2:0] f_rank (input [2:0] of);
         case (of)
             PHASE_FIRST_LOW: f_rank = 3'd5;

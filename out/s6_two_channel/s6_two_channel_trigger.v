@@ -4,8 +4,8 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Triggers: three sources, one strobe for all channels; a card whose channels have triggers of their own takes them from the same hits
-// (channel_trigger).
+// Triggers: three sources, one strobe for all channels; a card whose channels have triggers of their own takes them from the same
+// hits (channel_trigger).
 //
 // trigger pin -> synchroniser -> rising edge --+
 // timer, every period_cycles ------------------+-- enabled? --> register --> trigger, trigger_count

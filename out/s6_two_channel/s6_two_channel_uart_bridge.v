@@ -9,16 +9,15 @@
 // write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
 // read    02 len  a3 a2 a1 a0                                        04: all words from one address
 // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
-//
-// Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-// after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+// Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten after the
+// time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands
+// still.
 //
 // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
 //
 // With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
-//
-// A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
-// waits, the second one comes later than any turn ends.
+// A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that
+// byte waits, the second one comes later than any turn ends.
 //
 // A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
 //
@@ -40,7 +39,8 @@ module s6_two_channel_uart_bridge (
     output wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     output wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
+    // nothing.
     output wire         access,
     // With access: write a word; low = read a byte.
     output wire         write,
@@ -71,16 +71,15 @@ module s6_two_channel_uart_bridge (
     // write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
     // read    02 len  a3 a2 a1 a0                                        04: all words from one address
     // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
-    //
-    // Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-    // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+    // Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten after the
+    // time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that
+    // stands still.
     //
     // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
     //
     // With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
-    //
-    // A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
-    // waits, the second one comes later than any turn ends.
+    // A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word;
+    // that byte waits, the second one comes later than any turn ends.
     //
     // A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
     //
@@ -430,8 +429,10 @@ module s6_two_channel_uart_bridge (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // write_is_whole: A word is written only when a whole command for it has come: code, length, four bytes of address, four of data, without framing error or time-out between them.
-    // first_word_as_sent: The first word that a command writes is the one that was sent, and goes to the address that was sent; an address beyond the map goes nowhere.
+    // write_is_whole: A word is written only when a whole command for it has come: code, length, four bytes of address, four of
+    // data, without framing error or time-out between them.
+    // first_word_as_sent: The first word that a command writes is the one that was sent, and goes to the address that was sent; an
+    // address beyond the map goes nowhere.
     // read_is_whole: A byte is read only while a read command that has come whole is being answered.
     reg [3:0] f_bytes; initial f_bytes = 4'd0;
     reg f_is_write; initial f_is_write = 1'b0;

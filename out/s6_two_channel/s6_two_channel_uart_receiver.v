@@ -105,7 +105,8 @@ module s6_two_channel_uart_receiver (
 `endif
 `ifndef FORMAL_ANY_STATE
     // byte_as_sampled: A byte is the eight samples between a LOW start bit and a HIGH stop bit, the first one lowest.
-    // samples_timed: The first sample of a byte is half a bit behind its edge, less the way through the synchroniser; each other one a bit behind the one before, to the cycle.
+    // samples_timed: The first sample of a byte is half a bit behind its edge, less the way through the synchroniser; each other
+    // one a bit behind the one before, to the cycle.
     reg [9:0] f_samples;
     reg [3:0] f_count; initial f_count = 4'd0;
     reg [14:0] f_since; initial f_since = 15'd0;

@@ -65,7 +65,8 @@ module s6_two_channel_uart_transmitter (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // byte_on_the_line: TX has a start bit, the eight bits of the byte as it was taken, lowest first, and a stop bit; otherwise it is HIGH.
+    // byte_on_the_line: TX has a start bit, the eight bits of the byte as it was taken, lowest first, and a stop bit; otherwise it
+    // is HIGH.
     // tx_bit_timed: TX changes at the end of a bit only, and from one end to the next it is a bit, to the cycle.
     reg [3:0] f_bit; initial f_bit = 4'd10;
     reg [7:0] f_byte;

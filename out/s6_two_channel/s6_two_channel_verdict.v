@@ -10,15 +10,14 @@
 // taken, gave_up             _______/~~\_________    the flags are put together
 // prove                      ___________/~~\_____    what follows the answer fits, too
 // publish, late_fault, over  ______________/~~\__    cause and flags stay until the next one
-//
-// An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
-// not fall, additional data of another length) withdraws it.
+// An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA
+// does not fall, additional data of another length) withdraws it.
 module s6_two_channel_verdict (
     // System clock.
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // Flags that go with give_up, refuse or announce, see flag.
+    // Flags that go with give_up, refuse or announce; bits as the raw flags in the register map.
     input  wire  [19:0] found,
     // Strobe: the answer has been taken; CRC and error bits decide.
     input  wire         answer_taken,
@@ -68,7 +67,7 @@ module s6_two_channel_verdict (
     output wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     output wire   [4:0] cause_told,
-    // Raw flags, see flag.
+    // Raw flags, one bit for each fault; bits as in the register map.
     output wire  [19:0] flags_told,
     // Strobe, instead of publish: the delay is measured, now the position itself.
     output wire         once_more,
