@@ -37,6 +37,45 @@ pub(crate) fn beside(begin: &str, text: &str) -> Vec<String> {
     lines.iter().enumerate().map(line).collect()
 }
 
+/// A text with its long comment lines wrapped. A line goes on with the long one above it if it begins with a small letter and is no `name: words`.
+pub fn with_wrapped_comments(text: &str, mark: &str) -> String {
+    let words = |line: &str| {
+        let code = line.trim_start();
+        let words = code.strip_prefix(mark)?.strip_prefix(' ')?;
+        Some((line[..line.len() - code.len()].to_owned(), words.to_owned()))
+    };
+    let goes_on = |(pad, line): &(String, String), (first_pad, first): &(String, String)| {
+        let is_named = line
+            .split(' ')
+            .next()
+            .is_some_and(|word| word.ends_with(':'));
+        let is_small = line
+            .trim_start()
+            .starts_with(|c: char| c.is_ascii_lowercase());
+        pad == first_pad && is_small && !is_named && continues(line, first)
+    };
+    let mut out = String::new();
+    let mut lines = text.split_inclusive('\n').peekable();
+    while let Some(line) = lines.next() {
+        let is_long = line.trim_end().chars().count() > COLUMNS;
+        let Some(first) = words(line.trim_end()).filter(|(_, words)| is_long && !is_drawn(words))
+        else {
+            out.push_str(line);
+            continue;
+        };
+        let mut paragraph = vec![first.1.clone()];
+        while let Some(next) = lines.peek().and_then(|next| words(next.trim_end())) {
+            if !goes_on(&next, &first) {
+                break;
+            }
+            paragraph.push(next.1);
+            lines.next();
+        }
+        out.push_str(&comment(mark, &paragraph, &first.0));
+    }
+    out
+}
+
 /// Lines of at most `room` columns. The lines after the first one of a paragraph begin as its second one does; those of an item of a list begin
 /// below its text.
 fn wrapped(lines: &[String], room: usize) -> Vec<String> {
@@ -142,6 +181,23 @@ mod tests {
             "a ____/~~~\\_____________ b",
         ]);
         assert_eq!(wrapped(&text, 14), expected);
+    }
+
+    /// Catches a line of its own that is taken for the end of a long one, a code line that is changed, and an end of a sentence that is left over.
+    #[test]
+    fn long_comment_lines_of_a_text_are_wrapped() {
+        let long = "word ".repeat(30);
+        let text = format!("  -- {long}\n  -- end.\n  -- name: words\n  x -- {long}\n");
+        let found = with_wrapped_comments(&text, "--");
+        let first = "word ".repeat(25);
+        let rest = "word ".repeat(5);
+        assert_eq!(
+            found,
+            format!(
+                "  -- {}\n  -- {rest}end.\n  -- name: words\n  x -- {long}\n",
+                first.trim_end()
+            )
+        );
     }
 
     #[test]

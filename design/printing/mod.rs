@@ -9,6 +9,7 @@ mod row;
 mod scope;
 
 pub(crate) use clocked::Clocked;
+pub use comment::with_wrapped_comments;
 pub(crate) use comment::{beside, comment, with_comment};
 pub use header::Header;
 pub(crate) use names::{variant_name, Names};
