@@ -11,4 +11,5 @@ pub mod reg;
 pub mod verilog;
 pub mod vhdl;
 
+pub use printing::with_wrapped_comments;
 pub use rtl_design_macros::{kernel, kernel_of_parts, kernel_parts, ports, Block, States};

@@ -1,6 +1,7 @@
 //! Emitted files: text first, then all of them onto the disk or none.
 
 use crate::error::GenError;
+use rtl_design::with_wrapped_comments;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -47,6 +48,18 @@ pub fn manifest(artifacts: &[Artifact]) -> Artifact {
         .iter()
         .map(|a| format!("{}  {}\n", sha256(a.text.as_bytes()), a.path));
     Artifact::new(MANIFEST, lines.collect::<String>())
+}
+
+/// Wraps the long comment lines of files in Verilog and VHDL.
+pub fn wrap_comments(artifacts: &mut [Artifact]) {
+    for file in artifacts {
+        let mark = match file.path.rsplit('.').next() {
+            Some("v" | "vh" | "sv") => "//",
+            Some("vhd" | "vho") => "--",
+            _ => continue,
+        };
+        file.text = with_wrapped_comments(&file.text, mark);
+    }
 }
 
 /// Digests and file names in the text of a MANIFEST; what is no plain file name is passed over.

@@ -94,6 +94,7 @@ pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, G
             twice.path
         )));
     }
+    artifact::wrap_comments(&mut artifacts);
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
 }

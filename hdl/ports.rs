@@ -51,7 +51,7 @@ pub struct ServiceOrders {
     pub hold_off: Bit,
     /// Puts the EnDat clock LOW, for the pulse of the power-up sequence.
     pub clock_low: Bit,
-    /// Errors forced upon what is received, to try the error paths, as [`word::FORCE`](endat_regs::service::word::FORCE).
+    /// Errors forced upon what is received, to try the error paths; bits as `service.force` in the register map.
     pub forced: Bits<5>,
     /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
     pub watchdog_us: Bits<12>,

@@ -1,6 +1,6 @@
 //! The first lines of a file.
 
-use super::comment;
+use super::{beside, comment};
 use crate::elaborate::{Design, Direction, Module};
 
 /// What the first lines of a file say; what is empty is left out.
@@ -69,10 +69,11 @@ fn ports(top: &Module) -> Vec<String> {
             Direction::Output => "out",
         };
         let doc = net.docs.first().map_or("", String::as_str);
-        lines.push(format!(
-            "  {:name_width$}  {direction} {:>3}  {doc}",
+        let begin = format!(
+            "  {:name_width$}  {direction} {:>3}  ",
             net.name, net.width_bits
-        ));
+        );
+        lines.extend(beside(&begin, doc));
     }
     lines
 }

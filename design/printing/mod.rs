@@ -1,17 +1,20 @@
 //! What the printers of a [`Design`](crate::elaborate::Design) share: the head of a file, names, numbers, and what stands where in a module.
 
+mod clocked;
+mod comment;
 mod header;
 mod names;
 mod order;
 mod row;
 mod scope;
 
+pub(crate) use clocked::Clocked;
+pub use comment::with_wrapped_comments;
+pub(crate) use comment::{beside, comment, with_comment};
 pub use header::Header;
 pub(crate) use names::{variant_name, Names};
 use order::used_parameters;
-pub(crate) use order::{
-    constant_values, direct_next, processes, reads_and_targets, register_groups, DirectNext,
-};
+pub(crate) use order::{constant_values, reads_and_targets, register_groups};
 pub(crate) use row::{is_row, parts, Part};
 pub(crate) use scope::Scope;
 
@@ -33,10 +36,4 @@ pub(crate) fn is_quantity(name: &str, value: u128) -> bool {
 /// Whether a number without a name is said in decimal: times and counts, which are below a million or round, are.
 pub(crate) fn is_count(value: u128) -> bool {
     value < 1_000_000 || value.is_multiple_of(1_000)
-}
-
-/// Lines of a comment that begin with `mark`.
-pub(crate) fn comment(mark: &str, lines: &[String], pad: &str) -> String {
-    let line = |line: &String| format!("{}\n", format!("{pad}{mark} {line}").trim_end());
-    lines.iter().map(line).collect()
 }

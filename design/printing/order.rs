@@ -1,42 +1,7 @@
-//! What a module is printed from: which registers stand together, and which values need no net of their own.
+//! What a module is printed from: the registers of a clocked block, what statements read, constants.
 
-use crate::elaborate::{execute, Expr, ExprKind, Module, NetId, Process, Register, Statement};
+use crate::elaborate::{execute, Expr, ExprKind, Module, NetId, Register, Statement};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// The next value of a register that is a single expression.
-#[derive(Clone)]
-pub(crate) struct DirectNext {
-    pub value: Expr,
-    /// What is written about it.
-    pub docs: Vec<String>,
-}
-
-/// Registers whose next value is a single expression, and that expression.
-pub(crate) fn direct_next(module: &Module) -> BTreeMap<NetId, DirectNext> {
-    let next: BTreeSet<NetId> = module.registers.iter().map(|r| r.next).collect();
-    let single = |process: &Process| match &process.statements[..] {
-        [Statement::Assign {
-            net, value, docs, ..
-        }] if next.contains(net) && value.width_bits == module.nets[*net].width_bits => {
-            let (value, docs) = (value.clone(), docs.clone());
-            Some((*net, DirectNext { value, docs }))
-        }
-        _ => None,
-    };
-    module.processes.iter().filter_map(single).collect()
-}
-
-/// The processes that are printed: those of [`direct_next`] stand where their register is.
-pub(crate) fn processes<'a>(
-    module: &'a Module,
-    direct: &BTreeMap<NetId, DirectNext>,
-) -> Vec<&'a Process> {
-    let is_direct =
-        |s: &Statement| matches!(s, Statement::Assign { net, .. } if direct.contains_key(net));
-    let all = module.processes.iter();
-    all.filter(|p| !p.statements.iter().any(is_direct))
-        .collect()
-}
 
 /// Clock, its falling edge, and reset, and the registers that have all of them.
 pub(crate) type Group<'a> = ((NetId, bool, Option<NetId>), Vec<&'a Register>);

@@ -131,3 +131,85 @@ fn a_comment_stands_before_what_it_is_about() {
         &without(in_vhdl, "-- Only without. same <= '0';"),
     );
 }
+
+/// Private fields with a line of documentation each, and fields without one. Its head is so long that no file may have it in a single line: the
+/// printed text wraps a comment where it has more columns than a reader sees, which is so in this line and not in any other one of it, as all others are short.
+#[derive(LogicBlock, Block)]
+struct Fields {
+    pub clock: Signal<In, Clock>,
+    pub reset: Signal<In, Bit>,
+    /// A port whose documentation is one line of the source that is longer than a line of the emitted text may be, so that it goes on below.
+    pub enable: Signal<In, Bit>,
+    pub value: Signal<Out, Bits<4>>,
+    /// Cycles since reset, wrapping.
+    count: Reg<Bits<4>>,
+    plain: Reg<Bits<4>>,
+    /// Sum before the register.
+    sum: Signal<Local, Bits<4>>,
+    /// Step of the count.
+    step: Constant<Bits<4>>,
+}
+
+#[kernel]
+impl Logic for Fields {
+    fn update(&mut self) {
+        self.sum.next = self.count.q.val() + self.step.val();
+        if self.enable.val() {
+            self.count.d.next = self.sum.val();
+            self.plain.d.next = self.count.q.val();
+        }
+        self.value.next = self.count.q.val() ^ self.plain.q.val() ^ self.sum.val();
+    }
+}
+
+fn fields() -> [String; 2] {
+    let mut block = Fields::from_parts(FieldsParts {
+        step: Constant::new(3.into()),
+    });
+    block.connect_all();
+    let design = elaborate(&block, "fields").unwrap();
+    let header = Header::default();
+    [
+        verilog::print(&design, &header),
+        vhdl::print(&design, &header),
+    ]
+}
+
+/// Catches documentation of a private register, signal or constant that is lost or printed for another one.
+#[test]
+fn documentation_of_a_private_field_is_above_its_declaration() {
+    let [verilog, vhdl] = fields();
+    for lines in [
+        "    // Cycles since reset, wrapping.\n    reg    [3:0] count;",
+        "    // Sum before the register.\n    wire   [3:0] sum;",
+        "    // Step of the count.\n    localparam   [3:0] STEP = 4'd3;",
+        ";\n    reg    [3:0] plain;",
+    ] {
+        assert!(verilog.contains(lines), "{lines}\n{verilog}");
+    }
+    for lines in [
+        "    -- Cycles since reset, wrapping.\n    signal count ",
+        "    -- Sum before the register.\n    signal sum ",
+        "    -- Step of the count.\n    constant STEP ",
+        ";\n    signal plain ",
+    ] {
+        assert!(vhdl.contains(lines), "{lines}\n{vhdl}");
+    }
+}
+
+/// Catches a comment in the head, at a module or at a port that is longer than a line may be, or that loses a word.
+#[test]
+fn comments_have_at_most_132_columns() {
+    for (text, mark) in fields().iter().zip(["//", "--"]) {
+        let long = text.lines().find(|line| line.len() > 132);
+        assert!(long.is_none(), "{long:?}");
+        let words: Vec<&str> = text.split_whitespace().filter(|w| *w != mark).collect();
+        let words = words.join(" ");
+        let port = "A port whose documentation is one line of the source that is longer than a line of the emitted text may be, so that it goes on below.";
+        assert_eq!(words.matches(port).count(), 2, "{text}");
+        assert!(
+            words.contains("any other one of it, as all others are short."),
+            "{text}"
+        );
+    }
+}

@@ -2,6 +2,7 @@
 
 mod bundles;
 mod clean;
+mod clocked;
 mod comments;
 mod designs;
 mod errors;

@@ -1,10 +1,11 @@
 //! Registers and memories as Verilog text.
 
-use super::module::expression::{bits, literal, named_literal, Helpers};
+use super::module::expression::{bits, literal, named_literal};
 use super::module::ModulePrinter;
 use super::text::{comment, vector, INDENT};
 use crate::elaborate::{Memory, NetId, Register};
 use crate::printing::register_groups;
+use std::collections::BTreeSet;
 
 impl ModulePrinter<'_> {
     pub fn start(&mut self, register: &Register) -> String {
@@ -23,9 +24,9 @@ impl ModulePrinter<'_> {
             let head = format!("\n{INDENT}always @({edge} {}) begin\n", name(clock));
             let reset = reset.map(|net| name(net).clone());
             let body = match reset {
-                None => self.next_values(&group, &pad),
+                None => self.next_values(&group, 2),
                 Some(reset) => {
-                    let next = self.next_values(&group, &deep);
+                    let next = self.next_values(&group, 3);
                     let mut start = |r: &&Register| {
                         let start = self.start(r);
                         format!("{deep}{} <= {start};\n", self.module.nets[r.q].name)
@@ -41,20 +42,24 @@ impl ModulePrinter<'_> {
         out
     }
 
-    fn next_values(&mut self, group: &[&Register], pad: &str) -> String {
-        let mut out = String::new();
+    fn next_values(&mut self, group: &[&Register], depth: usize) -> String {
+        let (mut out, mut done) = (String::new(), BTreeSet::new());
         self.process_targets.clear();
+        self.sign = "<=";
         for register in group {
-            let name = self.module.nets[register.q].name.clone();
-            let next = match self.direct_next.get(&register.next).cloned() {
-                Some(direct) => {
-                    out.push_str(&comment(&direct.docs, pad));
-                    self.expression(&direct.value, &name, &mut Helpers::default())
+            match self.clocked.statements(register.next) {
+                Some((number, statements)) if done.insert(number) => {
+                    out.push_str(&self.block(&statements, depth));
                 }
-                None => self.module.nets[register.next].name.clone(),
-            };
-            out.push_str(&format!("{pad}{name} <= {next};\n"));
+                Some(_) => {}
+                None => {
+                    let name = |net: NetId| &self.module.nets[net].name;
+                    let (q, next) = (name(register.q), name(register.next));
+                    out.push_str(&format!("{}{q} <= {next};\n", INDENT.repeat(depth)));
+                }
+            }
         }
+        self.sign = "=";
         out
     }
 

@@ -5,9 +5,7 @@ pub(super) mod expression;
 
 use super::text::{comment, properties, ranges, vector, INDENT};
 use crate::elaborate::{mask, Design, Direction, Module, NetId, Statement};
-use crate::printing::{
-    constant_values, direct_next, processes, reads_and_targets, DirectNext, Scope,
-};
+use crate::printing::{constant_values, reads_and_targets, Clocked, Scope};
 use expression::{literal, range, Helper, Helpers};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,8 +27,10 @@ pub(super) struct ModulePrinter<'a> {
     inside: Vec<Helper>,
     /// Targets of the process that is being printed.
     pub process_targets: BTreeSet<NetId>,
-    /// Next values of registers that are one expression: they need no net.
-    pub direct_next: BTreeMap<NetId, DirectNext>,
+    /// Next values that need no net.
+    pub clocked: Clocked,
+    /// How the statements that are being printed assign: `=`, or `<=` in a clocked block.
+    pub sign: &'static str,
 }
 
 impl<'a> ModulePrinter<'a> {
@@ -42,7 +42,8 @@ impl<'a> ModulePrinter<'a> {
             continuous: vec![],
             inside: vec![],
             process_targets: BTreeSet::new(),
-            direct_next: direct_next(module),
+            clocked: Clocked::new(module),
+            sign: "=",
         }
     }
 
@@ -52,8 +53,11 @@ impl<'a> ModulePrinter<'a> {
             .collect();
         let mut combinational = String::new();
         let mut in_always = BTreeSet::new();
-        for process in processes(self.module, &self.direct_next) {
+        for process in self.clocked.processes.clone() {
             let text = self.process(&process.statements, &mut in_always);
+            if combinational.ends_with(&format!("\n{INDENT}end\n")) && !text.starts_with('\n') {
+                combinational.push('\n');
+            }
             combinational.push_str(&text);
         }
         let registers = self.registers();
@@ -126,7 +130,7 @@ impl<'a> ModulePrinter<'a> {
             .nets
             .iter()
             .enumerate()
-            .filter(|(id, _)| !ports.contains(id) && !self.direct_next.contains_key(id))
+            .filter(|(id, _)| !ports.contains(id) && !self.clocked.has_no_net(*id))
         {
             out.push_str(&comment(&net.docs, INDENT));
             let vector = vector(net.width_bits);
@@ -174,7 +178,7 @@ impl<'a> ModulePrinter<'a> {
 
     /// What is driven but never read, as Verilog expressions.
     fn unused(&self) -> Vec<String> {
-        let read = self.module.read_bits();
+        let read = self.clocked.read_bits(self.module);
         let outputs: BTreeSet<NetId> = self
             .module
             .ports
@@ -276,7 +280,7 @@ impl<'a> ModulePrinter<'a> {
             .collect()
     }
 
-    fn block(&mut self, statements: &[Statement], depth: usize) -> String {
+    pub fn block(&mut self, statements: &[Statement], depth: usize) -> String {
         statements
             .iter()
             .map(|s| self.statement(s, depth))
@@ -298,7 +302,7 @@ impl<'a> ModulePrinter<'a> {
                 let target = &self.module.nets[*net];
                 let place = range(&target.name, *low_bit, value.width_bits, target.width_bits);
                 let value = self.expression(value, &target.name, &mut helpers);
-                format!("{pad}{place} = {value};\n")
+                format!("{pad}{place} {} {value};\n", self.sign)
             }
             Statement::If {
                 condition,

@@ -38,6 +38,10 @@ pub(super) fn properties(text: &str) -> String {
     let line = |line: &str| match line {
         "" => "\n".to_string(),
         line if line.starts_with('`') => format!("{line}\n"),
+        line if line.starts_with(MARK) => {
+            let words = line.trim_start_matches(MARK).trim_start().to_owned();
+            comment(&[words], INDENT)
+        }
         line => format!("{INDENT}{}\n", labelled(line)),
     };
     let lines: String = text.lines().map(line).collect();

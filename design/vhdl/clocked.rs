@@ -1,9 +1,11 @@
 //! Registers and memories as VHDL text.
 
+use super::module::process::variable_lines;
 use super::module::ModulePrinter;
 use super::text::{bits, comment, named_literal, subtype, wrapped};
 use crate::elaborate::{Memory, NetId, Register};
 use crate::printing::{register_groups, INDENT};
+use std::collections::BTreeSet;
 
 /// Words of a memory in a line of its start values.
 const LINE: usize = 96;
@@ -26,9 +28,9 @@ impl ModulePrinter<'_> {
                 "rising_edge"
             };
             let body = match reset {
-                None => self.next_values(&group, &pad),
+                None => self.next_values(&group, 3),
                 Some(reset) => {
-                    let next = self.next_values(&group, &deep);
+                    let next = self.next_values(&group, 4);
                     let mut start = |r: &&Register| {
                         let start = self.start(r);
                         format!("{deep}{} <= {start};\n", self.module.nets[r.q].name)
@@ -44,25 +46,27 @@ impl ModulePrinter<'_> {
     }
 
     /// A process at an edge of a clock.
-    fn clocked(&self, clock: NetId, edge: &str, body: &str) -> String {
+    fn clocked(&mut self, clock: NetId, edge: &str, body: &str) -> String {
         let (clock, deep) = (self.reference(clock), INDENT.repeat(2));
+        let variables = variable_lines(&self.taken_subjects());
         format!(
-            "\n{INDENT}process ({clock})\n{INDENT}begin\n{deep}if {edge}({clock}) then\n{body}{deep}end if;\n{INDENT}end process;\n"
+            "\n{INDENT}process ({clock})\n{variables}{INDENT}begin\n{deep}if {edge}({clock}) then\n{body}{deep}end if;\n{INDENT}end process;\n"
         )
     }
 
-    fn next_values(&mut self, group: &[&Register], pad: &str) -> String {
-        let mut out = String::new();
+    fn next_values(&mut self, group: &[&Register], depth: usize) -> String {
+        let (mut out, mut done) = (String::new(), BTreeSet::new());
         for register in group {
-            let name = self.module.nets[register.q].name.clone();
-            let next = match self.direct_next.get(&register.next).cloned() {
-                Some(direct) => {
-                    out.push_str(&comment(&direct.docs, pad));
-                    self.assigned(&direct.value)
+            match self.clocked.statements(register.next) {
+                Some((number, statements)) if done.insert(number) => {
+                    out.push_str(&self.block(&statements, depth));
                 }
-                None => self.reference(register.next),
-            };
-            out.push_str(&format!("{pad}{name} <= {next};\n"));
+                Some(_) => {}
+                None => {
+                    let (q, next) = (self.reference(register.q), self.reference(register.next));
+                    out.push_str(&format!("{}{q} <= {next};\n", INDENT.repeat(depth)));
+                }
+            }
         }
         out
     }

@@ -3,12 +3,12 @@
 mod constants;
 mod declarations;
 mod expression;
-mod process;
+pub(super) mod process;
 
 use super::package::package_name;
 use super::text::{comment, Context};
 use crate::elaborate::{Design, Direction, ExprKind, Module, NetId};
-use crate::printing::{direct_next, reads_and_targets, DirectNext, Scope, INDENT};
+use crate::printing::{reads_and_targets, Clocked, Scope, INDENT};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the architecture of a module is called.
@@ -44,8 +44,8 @@ pub(super) struct ModulePrinter<'a> {
     /// Its ports are `std_logic_vector`.
     is_top: bool,
     pub scope: Scope<'a>,
-    /// Next values of registers that are one expression: they need no signal.
-    pub direct_next: BTreeMap<NetId, DirectNext>,
+    /// Next values that need no signal.
+    pub clocked: Clocked,
     /// Signals in the place of output ports: VHDL-93 does not read a port that it drives.
     inner: BTreeMap<NetId, String>,
     /// Signals of instances' inputs that are no names.
@@ -63,7 +63,7 @@ impl<'a> ModulePrinter<'a> {
             module,
             is_top: std::ptr::eq(module, design.top()),
             scope: Scope::new(design, module, super::emitted_name),
-            direct_next: direct_next(module),
+            clocked: Clocked::new(module),
             inner: BTreeMap::new(),
             added: vec![],
             variables: BTreeMap::new(),

@@ -11,12 +11,13 @@ const SHORT_BITS: usize = 4;
 /// The same where hexadecimal digits do not fit.
 const BINARY_BITS: usize = 12;
 
+/// A line of a comment in ASCII: VHDL-93 is Latin-1, where other characters would be something else.
+pub(super) fn plain(line: &String) -> String {
+    let letters = line.chars().map(|c| if c.is_ascii() { c } else { '?' });
+    letters.collect()
+}
+
 pub(super) fn comment(lines: &[String], pad: &str) -> String {
-    // VHDL-93 is Latin-1: what is not ASCII would be something else there.
-    let plain = |line: &String| {
-        let letters = line.chars().map(|c| if c.is_ascii() { c } else { '?' });
-        letters.collect::<String>()
-    };
     let lines: Vec<String> = lines.iter().map(plain).collect();
     crate::printing::comment(MARK, &lines, pad)
 }

@@ -8,8 +8,8 @@
 //!                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
 //! ```
 //!
-//! With [`Features::requests`] the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
-//! has a frame of its own. [`AddInfo`] keeps the record of the additional data that follow each position.
+//! With requests the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
+//! has a frame of its own. A separate block keeps the record of the additional data that follow each position.
 //!
 //! The first frame after reset, after an aborted frame and after `calibrate` runs at the calibration clock and
 //! measures the propagation delay; all others run at the configured clock. Settings stay as they are while `busy` and in the cycle of a trigger. With guards a frame
@@ -72,7 +72,7 @@ pub struct Channel {
     /// What the service asks of its channel.
     #[bundle]
     pub orders: ServiceOrdersIn,
-    /// Where the phase comes from, see [`crate::endat::line_delay::mode`].
+    /// Source of the phase: 0 mean over many edges, 1 fixed delay, 2 start bit of each frame.
     pub phase_mode: Signal<In, Bits<2>>,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
     pub fixed_delay: Signal<In, Bits<15>>,

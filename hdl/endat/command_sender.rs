@@ -13,8 +13,8 @@
 //!
 //! The encoder has one clock, from F1 to F2, to release the line before the driver is switched on.
 //!
-//! Ref: [`crate::protocol::DRIVER_ON_FALL`], [`crate::protocol::FIRST_COMMAND_FALL`], [`crate::protocol::DRIVER_OFF_FALL`],
-//! [`crate::protocol::SUPPLEMENT_ZEROS`].
+//! Ref: HEIDENHAIN PWM 20 user's manual (driver on at F2); TI motor-control SDK (first command bit at F3, 7 LOW bits before the
+//! start bit of a supplement).
 
 use crate::protocol::PARAMETER_BITS;
 use rtl_design::reg::Reg;

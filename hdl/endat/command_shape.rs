@@ -10,7 +10,7 @@
 //! other  the same     position with F1, F2, additional data; supplement
 //! ```
 //!
-//! Ref: [`crate::protocol::ModeCommand`].
+//! Ref: HEIDENHAIN Technical Information 383942 (mode commands).
 
 use crate::endat::ports::AnswerShapeOut;
 use rtl_design::{kernel, Block};

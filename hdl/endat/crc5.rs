@@ -6,7 +6,7 @@
 //! That makes the run-time length nearly as cheap as a fixed one.
 //!
 //! Ref: TI motor-control SDK (polynomial, order of the bits); Liu et al., "Angle encoder data acquisition system
-//! based on FPGA", 2024 (five equations for 31 bits, equal to [`Crc5Fixed`] of that length).
+//! based on FPGA", 2024 (five equations for 31 bits, equal to the result of this block for that length).
 
 use crate::protocol::{CRC5_POLYNOMIAL, CRC5_PRESET};
 use rtl_design::reg::Reg;

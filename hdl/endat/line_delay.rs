@@ -49,7 +49,7 @@ pub struct LineDelay {
     pub edge_second: Signal<In, Bit>,
     /// The cell is one of the answer behind the start bit: its edge counts (alignment only).
     pub in_answer: Signal<In, Bit>,
-    /// Where the phase comes from, see [`mode`] (alignment only).
+    /// Source of the phase (alignment only): 0 mean over many edges, 1 fixed delay, 2 start bit of each frame.
     pub mode: Signal<In, Bits<2>>,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
     pub fixed_delay: Signal<In, Bits<15>>,

@@ -23,7 +23,7 @@ pub use endat_regs::line::word;
 /// What the settings are after reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineStart {
-    /// Source of the phase, see [`crate::endat::line_delay::mode`].
+    /// Source of the phase: 0 mean over many edges, 1 fixed delay, 2 start bit of each frame.
     pub phase_mode: u64,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle (15 bits).
     pub fixed_delay: u64,

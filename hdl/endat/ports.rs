@@ -179,6 +179,6 @@ pub struct Told {
     pub confirm: Bit,
     /// Primary cause, with `publish`, `late_fault` or the end of a frame.
     pub cause_told: Bits<5>,
-    /// Raw flags, see [`cause::flag`](mod@crate::endat::transaction::cause::flag).
+    /// Raw flags, one bit for each fault; bits as in the register map.
     pub flags_told: Bits<20>,
 }

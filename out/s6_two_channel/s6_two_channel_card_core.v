@@ -34,7 +34,8 @@ module s6_two_channel_card_core (
     input  wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     input  wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
+    // nothing.
     input  wire         access,
     // With access: write a word; low = read a byte.
     input  wire         write,
@@ -524,6 +525,7 @@ module s6_two_channel_card_core (
             led_status_o = now[22];
         end
     end
+
     assign new_set = taken_2;
     assign registers_0_new_set = new_set;
     assign registers_1_new_set = new_set;

@@ -13,11 +13,10 @@
 //                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
 //
 // With requests the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
-// has a frame of its own. AddInfo keeps the record of the additional data that follow each position.
-//
-// The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and
-// measures the propagation delay; all others run at the configured clock. Settings stay as they are while busy and in the cycle of a trigger. With guards a frame
-// takes a copy of them, and a setting that changes under way makes its position invalid.
+// has a frame of its own. A separate block keeps the record of the additional data that follow each position.
+// The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and measures the
+// propagation delay; all others run at the configured clock. Settings stay as they are while busy and in the cycle of a trigger.
+// With guards a frame takes a copy of them, and a setting that changes under way makes its position invalid.
 module s6_two_channel_channel (
     // System clock.
     input  wire         clock,
@@ -77,7 +76,8 @@ module s6_two_channel_channel (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // T-format.
     output wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
@@ -125,6 +125,7 @@ module s6_two_channel_channel (
     wire         receiver_start_refused;
     wire         receiver_started;
     wire         receiver_all_sent;
+    wire         receiver_last_sent;
     wire         receiver_none_under_way;
     wire         receiver_all_used;
     wire         receiver_all_ended;
@@ -165,9 +166,7 @@ module s6_two_channel_channel (
     wire         wanted_shape_has_f2;
     reg          clk_pin; initial clk_pin = 1'b1;
     reg          data_pin; initial data_pin = 1'b0;
-    reg          data_pin_next;
     reg          oe_pin; initial oe_pin = 1'b0;
-    reg          oe_pin_next;
     wire         _unused_ok = &{1'b0, displaced, transaction_is_at_rest, shape_is_position, wanted_shape_has_f2};
 
     s6_two_channel_input_filter u_filter (
@@ -245,6 +244,7 @@ module s6_two_channel_channel (
         .start_refused(receiver_start_refused),
         .started(receiver_started),
         .all_sent(receiver_all_sent),
+        .last_sent(receiver_last_sent),
         .none_under_way(receiver_none_under_way),
         .all_used(receiver_all_used),
         .all_ended(receiver_all_ended),
@@ -272,6 +272,7 @@ module s6_two_channel_channel (
         .start_refused(receiver_start_refused),
         .started(receiver_started),
         .all_sent(receiver_all_sent),
+        .last_sent(receiver_last_sent),
         .none_under_way(receiver_none_under_way),
         .all_used(receiver_all_used),
         .all_ended(receiver_all_ended),
@@ -361,6 +362,7 @@ module s6_two_channel_channel (
             period = CALIBRATION_PERIOD_CYCLES;
         end
     end
+
     assign filter_set = filter_cycles;
     assign window_set = start_window_cycles;
     // Which command the next frame has is settled before it begins, and stays until all has been told of it.
@@ -380,10 +382,6 @@ module s6_two_channel_channel (
         transaction_crc_ok = receiver_crc_ok;
     end
 
-    always @* begin
-        data_pin_next = sender_data;
-        oe_pin_next = sender_oe;
-    end
     assign endat_clk = clk_pin;
     assign data_o = data_pin;
     assign data_oe = oe_pin;
@@ -396,8 +394,8 @@ module s6_two_channel_channel (
         end else begin
             // The line, from registers.
             clk_pin <= clock_gen_endat_clk;
-            data_pin <= data_pin_next;
-            oe_pin <= oe_pin_next;
+            data_pin <= sender_data;
+            oe_pin <= sender_oe;
         end
     end
 
@@ -426,7 +424,8 @@ module s6_two_channel_channel (
     end
     always @* `FORMAL_LABEL(frame_is_driven) assert (!transaction_run | (!transaction_is_at_rest & busy));
     always @* `FORMAL_LABEL(positions_only) assert (!transaction_start | frame_own | f_bare | f_rides);
-    // inputs: settings stay while the channel is busy and in the cycle of a trigger; every other input may be anything in every cycle
+    // inputs: settings stay while the channel is busy and in the cycle of a trigger; every other input may be anything in every
+    // cycle
     wire [68:0] f_settings = {period_cycles, first_low_extra_cycles, command, position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles};
     reg  [68:0] f_before;
     reg f_stay; initial f_stay = 1'b0;

@@ -8,10 +8,10 @@
 //
 // channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
 // ring block of the channel --(ring at rest, channel not busy, no trigger)--> configuration of the channel
-//
-// The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. Words that are held for longer
-// than a trigger show it: the age counts on while they are held, and stale reports a trigger that has come since. A byte that is not selected
-// is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
+// The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. Words that are
+// held for longer than a trigger show it: the age counts on while they are held, and stale reports a trigger that has come since. A
+// byte that is not selected is 0 in its register: the read path is an OR, and the selection costs no logic but the registers'
+// reset.
 module s6_two_channel_channel_registers (
     // System clock.
     input  wire         clock,
@@ -47,7 +47,8 @@ module s6_two_channel_channel_registers (
     input  wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     input  wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // T-format.
     input  wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
     input  wire   [5:0] position_width,
@@ -106,12 +107,10 @@ module s6_two_channel_channel_registers (
     wire         newer_trigger_now;
     // stale, with the trigger or load of this cycle.
     reg          stale_now;
-    // Age before the tick of this cycle.
-    reg   [15:0] age_base;
     // High if the age rises by one in this cycle.
-    reg          age_tick;
+    wire         age_tick;
     // Age with the tick or load of this cycle.
-    wire  [15:0] age_now;
+    reg   [15:0] age_now;
     // Words of the result as the channel gives it now.
     wire  [31:0] word_0;
     // Words of the result as the channel gives it now.
@@ -138,60 +137,48 @@ module s6_two_channel_channel_registers (
     wire  [31:0] shown_5;
     // High from a trigger that the channel takes until the result of that trigger.
     reg          waiting; initial waiting = 1'b0;
-    reg          waiting_next;
     // High if a trigger has come since the last result.
     reg          newer_trigger; initial newer_trigger = 1'b0;
     // High if a trigger has come since the trigger of the held result.
     reg          stale; initial stale = 1'b0;
     // stale as the host reads it; frozen while a word is read.
     reg          stale_shown; initial stale_shown = 1'b0;
-    reg          stale_shown_next;
     // Age of the held position in microseconds, up to 65535; loaded with the held words.
     reg   [15:0] age; initial age = 16'd0;
+    // High if the age has its largest value.
+    reg          age_full; initial age_full = 1'b0;
+    reg          age_full_next;
     // Age as the host reads it; frozen while a word is read.
     reg   [15:0] age_shown; initial age_shown = 16'd0;
-    reg   [15:0] age_shown_next;
     // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_0; initial held_0 = 32'd0;
-    reg   [31:0] held_0_next;
     // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_1; initial held_1 = 32'd0;
-    reg   [31:0] held_1_next;
     // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_2; initial held_2 = 32'd0;
-    reg   [31:0] held_2_next;
     // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_3; initial held_3 = 32'd0;
-    reg   [31:0] held_3_next;
     // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_4; initial held_4 = 32'd0;
-    reg   [31:0] held_4_next;
     // Words of the result that the host reads; loaded together for all channels.
     reg   [31:0] held_5; initial held_5 = 32'd0;
-    reg   [31:0] held_5_next;
     // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_0; initial byte_0 = 8'd0;
-    reg    [7:0] byte_0_next;
     wire         byte_0_reset;
     // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_1; initial byte_1 = 8'd0;
-    reg    [7:0] byte_1_next;
     wire         byte_1_reset;
     // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_2; initial byte_2 = 8'd0;
-    reg    [7:0] byte_2_next;
     wire         byte_2_reset;
     // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_3; initial byte_3 = 8'd0;
-    reg    [7:0] byte_3_next;
     wire         byte_3_reset;
     // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_4; initial byte_4 = 8'd0;
-    reg    [7:0] byte_4_next;
     wire         byte_4_reset;
     // Selected byte of each held word; 0 for words that are not read.
     reg    [7:0] byte_5; initial byte_5 = 8'd0;
-    reg    [7:0] byte_5_next;
     wire         byte_5_reset;
     // OR of these bytes; 0 while this channel is not read.
     reg    [7:0] read_byte; initial read_byte = 8'd0;
@@ -200,13 +187,11 @@ module s6_two_channel_channel_registers (
     wire  [31:0] ring_word2;
     // Configuration word 0 in use: clock and frame; copied from the ring while the channel is idle.
     reg   [31:0] config0; initial config0 = 32'h381d0020;
-    reg   [31:0] config0_next;
     // Configuration word 1 in use: timing; copied from the ring while the channel is idle.
     reg   [31:0] config1; initial config1 = 32'h20800b8;
-    reg   [31:0] config1_next;
     // Configuration word 2 in use: limits; copied from the ring while the channel is idle.
     reg   [31:0] config2; initial config2 = 32'hc501012;
-    reg   [31:0] config2_next;
+    wire         _unused_ok = &{1'b0, config0[15:11], config0[23:22], config0[31:30], config1[15:11], config1[23:22], config1[31:28], config2[15:12], config2[31:29]};
 
     s6_two_channel_config_ring_2 u_ring (
         .clock(clock),
@@ -219,54 +204,25 @@ module s6_two_channel_channel_registers (
         .word2(ring_word2)
     );
 
-    always @* begin
-        waiting_next = waiting;
-        // A trigger that the channel does not take gives no result of its own.
-        if (result_strobe) begin
-            waiting_next = 1'b0;
-        end
-        if (new_set) begin
-            waiting_next = trigger & !busy;
-        end
-    end
-
-    always @* begin
-        config0_next = config0;
-        config1_next = config1;
-        config2_next = config2;
-        // Not in the cycle of a trigger either: its frame uses the settings that were checked with it.
-        if (ring_home & !busy & !trigger) begin
-            config0_next = ring_word0;
-            config1_next = ring_word1;
-            config2_next = ring_word2;
-        end
-    end
     assign taken = trigger & !busy;
     assign owes = waiting & !result_strobe;
     assign brought = waiting & result_strobe;
     // A trigger that comes with a result is newer than it.
     assign newer_trigger_now = trigger | (newer_trigger & !result_strobe);
+    assign age_tick = tick_us & !age_full;
 
     always @* begin
         stale_now = stale | trigger;
-        age_base = age;
-        age_tick = tick_us & !(&age);
+        age_full_next = (&age[15:1]) & (age[0] | age_tick);
+        age_now = age + {15'd0, age_tick};
+        // After the adder: load is known late.
         if (load) begin
             stale_now = newer_trigger_now;
-            age_base = age_us;
-            age_tick = 1'b0;
+            age_now = age_us;
+            age_full_next = &age_us;
         end
     end
-    assign age_now = age_base + {15'd0, age_tick};
 
-    always @* begin
-        stale_shown_next = stale_shown;
-        age_shown_next = age_shown;
-        if (show) begin
-            stale_shown_next = stale_now;
-            age_shown_next = age_now;
-        end
-    end
     assign word_0 = {flags[19:12], fresh, position_valid, 1'b0, cause, sequence_value};
     assign word_1 = position[31:0];
     // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
@@ -274,156 +230,12 @@ module s6_two_channel_channel_registers (
     assign word_3 = first_fall_timestamp;
     assign word_4 = {flags[11:0], delay_cycles[9:0], crc_computed, crc_received};
     assign word_5 = {2'd0, delay_cycles[10], recovery_cycles, 16'd0};
-
-    always @* begin
-        held_0_next = held_0;
-        if (load) begin
-            held_0_next = word_0;
-        end
-    end
     assign shown_0 = held_0;
-
-    always @* begin
-        held_1_next = held_1;
-        if (load) begin
-            held_1_next = word_1;
-        end
-    end
     assign shown_1 = held_1;
-
-    always @* begin
-        held_2_next = held_2;
-        if (load) begin
-            held_2_next = word_2;
-        end
-    end
     assign shown_2 = held_2;
-
-    always @* begin
-        held_3_next = held_3;
-        if (load) begin
-            held_3_next = word_3;
-        end
-    end
     assign shown_3 = held_3;
-
-    always @* begin
-        held_4_next = held_4;
-        if (load) begin
-            held_4_next = word_4;
-        end
-    end
     assign shown_4 = held_4;
-
-    always @* begin
-        held_5_next = held_5;
-        if (load) begin
-            held_5_next = word_5;
-        end
-    end
     assign shown_5 = held_5 | {16'd0, age_shown} | {1'b0, stale_shown, 30'd0};
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_0_next = shown_0[31:24];
-            end
-            2'd1: begin
-                byte_0_next = shown_0[23:16];
-            end
-            2'd2: begin
-                byte_0_next = shown_0[15:8];
-            end
-            default: begin
-                byte_0_next = shown_0[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_1_next = shown_1[31:24];
-            end
-            2'd1: begin
-                byte_1_next = shown_1[23:16];
-            end
-            2'd2: begin
-                byte_1_next = shown_1[15:8];
-            end
-            default: begin
-                byte_1_next = shown_1[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_2_next = shown_2[31:24];
-            end
-            2'd1: begin
-                byte_2_next = shown_2[23:16];
-            end
-            2'd2: begin
-                byte_2_next = shown_2[15:8];
-            end
-            default: begin
-                byte_2_next = shown_2[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_3_next = shown_3[31:24];
-            end
-            2'd1: begin
-                byte_3_next = shown_3[23:16];
-            end
-            2'd2: begin
-                byte_3_next = shown_3[15:8];
-            end
-            default: begin
-                byte_3_next = shown_3[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_4_next = shown_4[31:24];
-            end
-            2'd1: begin
-                byte_4_next = shown_4[23:16];
-            end
-            2'd2: begin
-                byte_4_next = shown_4[15:8];
-            end
-            default: begin
-                byte_4_next = shown_4[7:0];
-            end
-        endcase
-    end
-
-    always @* begin
-        case (lane)
-            2'd0: begin
-                byte_5_next = shown_5[31:24];
-            end
-            2'd1: begin
-                byte_5_next = shown_5[23:16];
-            end
-            2'd2: begin
-                byte_5_next = shown_5[15:8];
-            end
-            default: begin
-                byte_5_next = shown_5[7:0];
-            end
-        endcase
-    end
     assign read_out = read_in | read_byte;
     assign period_cycles = config0[10:0];
     assign position_bits = config0[21:16];
@@ -448,6 +260,7 @@ module s6_two_channel_channel_registers (
             stale <= 1'b0;
             stale_shown <= 1'b0;
             age <= 16'd0;
+            age_full <= 1'b0;
             age_shown <= 16'd0;
             held_0 <= 32'd0;
             held_1 <= 32'd0;
@@ -459,21 +272,45 @@ module s6_two_channel_channel_registers (
             config1 <= 32'h20800b8;
             config2 <= 32'hc501012;
         end else begin
-            waiting <= waiting_next;
+            // A trigger that the channel does not take gives no result of its own.
+            if (result_strobe) begin
+                waiting <= 1'b0;
+            end
+            if (new_set) begin
+                waiting <= trigger & !busy;
+            end
             newer_trigger <= newer_trigger_now;
             stale <= stale_now;
-            stale_shown <= stale_shown_next;
+            if (show) begin
+                stale_shown <= stale_now;
+                age_shown <= age_now;
+            end
             age <= age_now;
-            age_shown <= age_shown_next;
-            held_0 <= held_0_next;
-            held_1 <= held_1_next;
-            held_2 <= held_2_next;
-            held_3 <= held_3_next;
-            held_4 <= held_4_next;
-            held_5 <= held_5_next;
-            config0 <= config0_next;
-            config1 <= config1_next;
-            config2 <= config2_next;
+            age_full <= age_full_next;
+            if (load) begin
+                held_0 <= word_0;
+            end
+            if (load) begin
+                held_1 <= word_1;
+            end
+            if (load) begin
+                held_2 <= word_2;
+            end
+            if (load) begin
+                held_3 <= word_3;
+            end
+            if (load) begin
+                held_4 <= word_4;
+            end
+            if (load) begin
+                held_5 <= word_5;
+            end
+            // Not in the cycle of a trigger either: its frame uses the settings that were checked with it.
+            if (ring_home & !busy & !trigger) begin
+                config0 <= ring_word0;
+                config1 <= ring_word1;
+                config2 <= ring_word2;
+            end
         end
     end
 
@@ -481,7 +318,20 @@ module s6_two_channel_channel_registers (
         if (byte_0_reset) begin
             byte_0 <= 8'd0;
         end else begin
-            byte_0 <= byte_0_next;
+            case (lane)
+                2'd0: begin
+                    byte_0 <= shown_0[31:24];
+                end
+                2'd1: begin
+                    byte_0 <= shown_0[23:16];
+                end
+                2'd2: begin
+                    byte_0 <= shown_0[15:8];
+                end
+                default: begin
+                    byte_0 <= shown_0[7:0];
+                end
+            endcase
         end
     end
 
@@ -489,7 +339,20 @@ module s6_two_channel_channel_registers (
         if (byte_1_reset) begin
             byte_1 <= 8'd0;
         end else begin
-            byte_1 <= byte_1_next;
+            case (lane)
+                2'd0: begin
+                    byte_1 <= shown_1[31:24];
+                end
+                2'd1: begin
+                    byte_1 <= shown_1[23:16];
+                end
+                2'd2: begin
+                    byte_1 <= shown_1[15:8];
+                end
+                default: begin
+                    byte_1 <= shown_1[7:0];
+                end
+            endcase
         end
     end
 
@@ -497,7 +360,20 @@ module s6_two_channel_channel_registers (
         if (byte_2_reset) begin
             byte_2 <= 8'd0;
         end else begin
-            byte_2 <= byte_2_next;
+            case (lane)
+                2'd0: begin
+                    byte_2 <= shown_2[31:24];
+                end
+                2'd1: begin
+                    byte_2 <= shown_2[23:16];
+                end
+                2'd2: begin
+                    byte_2 <= shown_2[15:8];
+                end
+                default: begin
+                    byte_2 <= shown_2[7:0];
+                end
+            endcase
         end
     end
 
@@ -505,7 +381,20 @@ module s6_two_channel_channel_registers (
         if (byte_3_reset) begin
             byte_3 <= 8'd0;
         end else begin
-            byte_3 <= byte_3_next;
+            case (lane)
+                2'd0: begin
+                    byte_3 <= shown_3[31:24];
+                end
+                2'd1: begin
+                    byte_3 <= shown_3[23:16];
+                end
+                2'd2: begin
+                    byte_3 <= shown_3[15:8];
+                end
+                default: begin
+                    byte_3 <= shown_3[7:0];
+                end
+            endcase
         end
     end
 
@@ -513,7 +402,20 @@ module s6_two_channel_channel_registers (
         if (byte_4_reset) begin
             byte_4 <= 8'd0;
         end else begin
-            byte_4 <= byte_4_next;
+            case (lane)
+                2'd0: begin
+                    byte_4 <= shown_4[31:24];
+                end
+                2'd1: begin
+                    byte_4 <= shown_4[23:16];
+                end
+                2'd2: begin
+                    byte_4 <= shown_4[15:8];
+                end
+                default: begin
+                    byte_4 <= shown_4[7:0];
+                end
+            endcase
         end
     end
 
@@ -521,7 +423,20 @@ module s6_two_channel_channel_registers (
         if (byte_5_reset) begin
             byte_5 <= 8'd0;
         end else begin
-            byte_5 <= byte_5_next;
+            case (lane)
+                2'd0: begin
+                    byte_5 <= shown_5[31:24];
+                end
+                2'd1: begin
+                    byte_5 <= shown_5[23:16];
+                end
+                2'd2: begin
+                    byte_5 <= shown_5[15:8];
+                end
+                default: begin
+                    byte_5 <= shown_5[7:0];
+                end
+            endcase
         end
     end
 

@@ -72,6 +72,7 @@ module s6_two_channel_clock_gen (
             level_next = 1'b0;
         end
     end
+
     assign endat_clk = level;
     assign will_rise = rise_now;
     assign rise = risen;
@@ -94,7 +95,8 @@ module s6_two_channel_clock_gen (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // no_short_low: CLOCK is LOW for half a period at least, and for half a period behind what holds it LOW, by the shortest period that was set meanwhile.
+    // no_short_low: CLOCK is LOW for half a period at least, and for half a period behind what holds it LOW, by the shortest period
+    // that was set meanwhile.
     // no_short_high: CLOCK is HIGH for half a period at least before it falls by itself.
     // starts_at_once: A start makes CLOCK LOW in the next cycle, whatever it was.
     reg [10:0] f_age_cycles; initial f_age_cycles = 11'd2046;

@@ -17,8 +17,8 @@
 //
 // The encoder has one clock, from F1 to F2, to release the line before the driver is switched on.
 //
-// Ref: DRIVER_ON_FALL, FIRST_COMMAND_FALL, DRIVER_OFF_FALL,
-// SUPPLEMENT_ZEROS.
+// Ref: HEIDENHAIN PWM 20 user's manual (driver on at F2); TI motor-control SDK (first command bit at F3, 7 LOW bits before the
+// start bit of a supplement).
 module s6_two_channel_command_sender (
     // System clock.
     input  wire         clock,
@@ -42,7 +42,6 @@ module s6_two_channel_command_sender (
     wire   [7:0] cells;
     wire   [2:0] cell_now;
     reg    [3:0] cells_left; initial cells_left = 4'd0;
-    reg    [3:0] cells_left_next;
     wire         _unused_ok = &{1'b0, start_supplement};
 
     // Cells in falling order: 7 = the lead-in 0 at F2, 6..1 = the command, 8 and 0 = driver off.
@@ -50,25 +49,23 @@ module s6_two_channel_command_sender (
     assign cell_now = cells_left[2:0];
 
     always @* begin
-        cells_left_next = cells_left;
-        if (fall & (|cells_left)) begin
-            cells_left_next = cells_left - 4'd1;
-        end
         data = cells[cell_now];
         oe = |cell_now;
-        if (aborts) begin
-            cells_left_next = 4'd0;
-        end
-        if (start) begin
-            cells_left_next = 4'd8;
-        end
     end
 
     always @(posedge clock) begin
         if (reset) begin
             cells_left <= 4'd0;
         end else begin
-            cells_left <= cells_left_next;
+            if (fall & (|cells_left)) begin
+                cells_left <= cells_left - 4'd1;
+            end
+            if (aborts) begin
+                cells_left <= 4'd0;
+            end
+            if (start) begin
+                cells_left <= 4'd8;
+            end
         end
     end
 
@@ -82,7 +79,8 @@ module s6_two_channel_command_sender (
     localparam         HAS_ALL = 1'b0;
     wire [4:0] bits_left = 5'd0;
     wire [0:0] in_supplement = 1'd0;
-    // driver_window: DATA is driven only between the second and the ninth falling edge of CLOCK in a frame; further only for a parameter.
+    // driver_window: DATA is driven only between the second and the ninth falling edge of CLOCK in a frame; further only for a
+    // parameter.
     // command_as_asked: DATA is LOW in the cell before the mode command, and then its six bits, the most significant first.
     reg [5:0] f_falls; initial f_falls = 6'd0;
     always @(posedge clock) begin

@@ -14,7 +14,7 @@
 // other  complement   24 bits there, 24 bits back
 // other  the same     position with F1, F2, additional data; supplement
 //
-// Ref: ModeCommand.
+// Ref: HEIDENHAIN Technical Information 383942 (mode commands).
 module s6_two_channel_command_shape (
     // Mode command.
     input  wire   [5:0] command,

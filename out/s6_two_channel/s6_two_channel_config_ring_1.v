@@ -32,25 +32,12 @@ module s6_two_channel_config_ring_1 (
 );
     // Word 0 while the ring is at rest; its top byte leaves first.
     reg   [31:0] w0; initial w0 = 32'd3;
-    reg   [31:0] w0_next;
     // Word 1 while the ring is at rest.
     reg   [31:0] w1; initial w1 = 32'h2710;
-    reg   [31:0] w1_next;
     // Word 2 while the ring is at rest; bytes enter at its low end.
     reg   [31:0] w2; initial w2 = 32'd0;
-    reg   [31:0] w2_next;
     wire         _unused_ok = &{1'b0, byte_in[8]};
 
-    always @* begin
-        w0_next = w0;
-        w1_next = w1;
-        w2_next = w2;
-        if (turn) begin
-            w0_next = {w0[23:0], w1[31:24]};
-            w1_next = {w1[23:0], w2[31:24]};
-            w2_next = {w2[23:0], byte_in[7:0]};
-        end
-    end
     assign byte_out = {1'b0, w0[31:24]};
     assign word0 = w0;
     assign word1 = w1;
@@ -62,9 +49,11 @@ module s6_two_channel_config_ring_1 (
             w1 <= 32'h2710;
             w2 <= 32'd0;
         end else begin
-            w0 <= w0_next;
-            w1 <= w1_next;
-            w2 <= w2_next;
+            if (turn) begin
+                w0 <= {w0[23:0], w1[31:24]};
+                w1 <= {w1[23:0], w2[31:24]};
+                w2 <= {w2[23:0], byte_in[7:0]};
+            end
         end
     end
 endmodule

@@ -5,9 +5,8 @@
 `default_nettype none
 
 // Parallel CRC5 of a word whose last bit has just come in at place 4, 19, 34 or 49, with zeros below its first bit.
-//
-// What a bit contributes depends on its distance from the last one, modulo 15; that one stands at place 4, modulo 15. So the word folded to
-// 15 bits gives five parities that are the same for every width, and preset and inversion add one of 15 constants.
+// What a bit contributes depends on its distance from the last one, modulo 15; that one stands at place 4, modulo 15. So the word
+// folded to 15 bits gives five parities that are the same for every width, and preset and inversion add one of 15 constants.
 module s6_two_channel_crc5_word (
     // The word, its last bit at one of the four places.
     input  wire  [49:0] word,
@@ -111,6 +110,7 @@ module s6_two_channel_crc5_word (
             sum = sum ^ WEIGHT_4;
         end
     end
+
     assign crc = sum;
 endmodule
 

@@ -72,7 +72,8 @@ module s6_two_channel_encoder_port (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // T-format.
     output wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,

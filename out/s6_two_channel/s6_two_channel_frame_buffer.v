@@ -12,9 +12,9 @@
 //                                                  start of frame ^  written ^        ^ read
 // RAM   .... frame frame | n  b  b  b  n  b ...                                  take-+
 //            ^ read_at     ^ start_at    ^ code_at: kept for the distance to the next zero
-//
-// The place of the next code byte is kept free and written when the zero is met. A reader sees the frame only when its end is written:
-// start_at is taken forward over all of it at once. A byte takes 16 cycles: one for each bit of the CRC, and time for the rest.
+// The place of the next code byte is kept free and written when the zero is met. A reader sees the frame only when its end is
+// written: start_at is taken forward over all of it at once. A byte takes 16 cycles: one for each bit of the CRC, and time for the
+// rest.
 //
 // Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
 module s6_two_channel_frame_buffer (
@@ -71,13 +71,10 @@ module s6_two_channel_frame_buffer (
     wire  [10:0] ram2k_0_write_address;
     // High while a frame is written.
     reg          writing; initial writing = 1'b0;
-    reg          writing_next;
     // Which of the 16 cycles of the byte this is.
     reg    [3:0] cycle_at; initial cycle_at = 4'd0;
-    reg    [3:0] cycle_at_next;
     // Byte of the set that is written: block in bits 6 to 3, byte in bits 2 to 0.
     reg    [6:0] at; initial at = 7'd0;
-    reg    [6:0] at_next;
     wire         at_reset;
     // High while the bytes following the last block are written: CRC and end.
     reg          in_tail; initial in_tail = 1'b0;
@@ -87,31 +84,24 @@ module s6_two_channel_frame_buffer (
     reg          is_past; initial is_past = 1'b0;
     // Byte that is written.
     reg    [7:0] byte_held; initial byte_held = 8'd0;
-    reg    [7:0] byte_held_next;
     // High if that byte is 0, which COBS replaces.
     reg          is_zero; initial is_zero = 1'b0;
     // High in the last cycle of a byte.
     reg          byte_end; initial byte_end = 1'b0;
     // CRC of the bytes so far; the start value while no frame is written.
     reg   [15:0] crc; initial crc = 16'hffff;
-    reg   [15:0] crc_next;
     wire         crc_reset;
     // Distance from the last code byte: bytes since then, plus one.
     reg    [6:0] run; initial run = 7'd1;
-    reg    [6:0] run_next;
     wire         run_reset;
     // Address of the next byte.
     reg   [12:0] write_at; initial write_at = 13'd0;
-    reg   [12:0] write_at_next;
     // Address that is kept free for the next code byte.
     reg   [12:0] code_at; initial code_at = 13'd0;
-    reg   [12:0] code_at_next;
     // Address following the last whole frame: the reader stops there.
     reg   [12:0] start_at; initial start_at = 13'd0;
-    reg   [12:0] start_at_next;
     // Address of the next byte to read.
     reg   [12:0] read_at; initial read_at = 13'd0;
-    reg   [12:0] read_at_next;
     // Bytes that wait to be read.
     reg   [12:0] used; initial used = 13'd0;
     // High if a whole frame fits.
@@ -120,93 +110,17 @@ module s6_two_channel_frame_buffer (
     reg          took; initial took = 1'b0;
     wire         _unused_ok = &{1'b0, write_address[12:11]};
 
-    always @* begin
-        at_next = at;
-        if (byte_end) begin
-            at_next = at + 7'd1;
-        end
-    end
-
-    always @* begin
-        run_next = run;
-        if (byte_end) begin
-            run_next = run + 7'd1;
-        end
-    end
-
-    always @* begin
-        writing_next = writing;
-        if (start) begin
-            writing_next = 1'b1;
-        end
-        if (byte_end & is_past) begin
-            writing_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        start_at_next = start_at;
-        if (byte_end & is_end) begin
-            start_at_next = write_at;
-        end
-    end
-
-    always @* begin
-        read_at_next = read_at;
-        if (take) begin
-            read_at_next = (read_at + 13'd1) & MASK;
-        end
-    end
     // Each frame begins anew.
     assign at_reset = !writing;
     assign crc_reset = !writing;
     assign run_reset = !writing | (byte_end & is_zero);
-
-    always @* begin
-        // Which byte, and which of its 16 cycles.
-        cycle_at_next = cycle_at + 4'd1;
-        if (!writing) begin
-            cycle_at_next = 4'd0;
-        end
-    end
     assign block = at[6:3];
     assign byte_at = at[2:0];
-
-    always @* begin
-        byte_held_next = set_byte;
-        if (in_tail & !(|at[2:1])) begin
-            byte_held_next = crc[7:0];
-            if (at[0]) begin
-                byte_held_next = crc[15:8];
-            end
-        end
-    end
     // A bit of the CRC in each of the second eight cycles.
     assign bit_index = ~cycle_at[2:0];
     assign feedback = crc[15] ^ byte_held[bit_index];
-
-    always @* begin
-        crc_next = crc;
-        if (cycle_at[3] & !in_tail) begin
-            crc_next = {crc[14:0], 1'b0};
-            if (feedback) begin
-                crc_next = {crc[14:0], 1'b0} ^ POLYNOMIAL;
-            end
-        end
-    end
     // COBS: a zero becomes the place of the next code byte, and its distance goes to the last one.
     assign advance = start | (byte_end & !is_end & !is_past);
-
-    always @* begin
-        write_at_next = write_at;
-        code_at_next = code_at;
-        if (advance) begin
-            write_at_next = (write_at + 13'd1) & MASK;
-            if (start | is_zero) begin
-                code_at_next = write_at;
-            end
-        end
-    end
     assign write = byte_end & !is_past;
 
     always @* begin
@@ -220,6 +134,7 @@ module s6_two_channel_frame_buffer (
             write_byte = 8'd0;
         end
     end
+
     assign idle = !writing;
     assign room = fits;
     assign waiting_bytes = {3'd0, used};
@@ -247,22 +162,46 @@ module s6_two_channel_frame_buffer (
             fits <= 1'b1;
             took <= 1'b0;
         end else begin
-            writing <= writing_next;
-            cycle_at <= cycle_at_next;
+            if (start) begin
+                writing <= 1'b1;
+            end
+            if (byte_end & is_past) begin
+                writing <= 1'b0;
+            end
+            // Which byte, and which of its 16 cycles.
+            cycle_at <= cycle_at + 4'd1;
+            if (!writing) begin
+                cycle_at <= 4'd0;
+            end
             // The tail: 0, 1 = CRC, 2 = the zero that COBS puts at the end, 3 = the end of the frame, 4 = time for the counters.
             in_tail <= at[6:3] == TAIL_BLOCK;
             is_end <= in_tail & (&at[1:0]);
             is_past <= in_tail & at[2];
-            byte_held <= byte_held_next;
+            byte_held <= set_byte;
+            if (in_tail & !(|at[2:1])) begin
+                byte_held <= crc[7:0];
+                if (at[0]) begin
+                    byte_held <= crc[15:8];
+                end
+            end
             is_zero <= !(|byte_held);
             byte_end <= writing & (cycle_at == 4'd14);
-            write_at <= write_at_next;
-            code_at <= code_at_next;
-            start_at <= start_at_next;
-            read_at <= read_at_next;
+            if (advance) begin
+                write_at <= (write_at + 13'd1) & MASK;
+                if (start | is_zero) begin
+                    code_at <= write_at;
+                end
+            end
+            if (byte_end & is_end) begin
+                start_at <= write_at;
+            end
+            if (take) begin
+                read_at <= (read_at + 13'd1) & MASK;
+            end
             used <= (start_at - read_at) & MASK;
             fits <= used <= MOST_USED;
-            // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after that.
+            // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after
+            // that.
             took <= take;
         end
     end
@@ -271,7 +210,9 @@ module s6_two_channel_frame_buffer (
         if (at_reset) begin
             at <= 7'd0;
         end else begin
-            at <= at_next;
+            if (byte_end) begin
+                at <= at + 7'd1;
+            end
         end
     end
 
@@ -279,7 +220,12 @@ module s6_two_channel_frame_buffer (
         if (crc_reset) begin
             crc <= 16'hffff;
         end else begin
-            crc <= crc_next;
+            if (cycle_at[3] & !in_tail) begin
+                crc <= {crc[14:0], 1'b0};
+                if (feedback) begin
+                    crc <= {crc[14:0], 1'b0} ^ POLYNOMIAL;
+                end
+            end
         end
     end
 
@@ -287,7 +233,9 @@ module s6_two_channel_frame_buffer (
         if (run_reset) begin
             run <= 7'd1;
         end else begin
-            run <= run_next;
+            if (byte_end) begin
+                run <= run + 7'd1;
+            end
         end
     end
 
@@ -314,9 +262,11 @@ module s6_two_channel_frame_buffer (
 `endif
 `ifndef FORMAL_ANY_STATE
     localparam         HAS_OTHER_FRAMES = 1'b0;
-    // crc16_as_sent: The two bytes following a set are its CRC-16, equal to one that is computed apart from it over the bytes as they were written.
+    // crc16_as_sent: The two bytes following a set are its CRC-16, equal to one that is computed apart from it over the bytes as
+    // they were written.
     // whole_frames_only: What may be read ends with a frame: its end moves only when the last byte of a frame has been written.
-    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it in addition to the bytes that wait.
+    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it
+    // in addition to the bytes that wait.
     reg [15:0] f_crc; initial f_crc = 16'hffff;
     reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
     wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;

@@ -36,38 +36,22 @@ module s6_two_channel_half_period (
     reg          tick_now;
     // Cycles of the half under way, plus 2; compared one cycle ahead.
     reg    [9:0] count; initial count = 10'd2;
-    reg    [9:0] count_next;
     // High in the last cycle of a half, unless it is a longer second half.
     reg          hit; initial hit = 1'b0;
-    reg          hit_next;
+    // High if the period has an odd number of cycles.
+    reg          is_odd; initial is_odd = 1'b0;
     // High one cycle after hit: last cycle of a second half that is one cycle longer.
     reg          hit_late; initial hit_late = 1'b0;
-    reg          hit_late_next;
 
     assign half_cycles = period_cycles[10:1];
 
     always @* begin
         tick_now = hit;
-        if (second & period_cycles[0]) begin
+        if (second & is_odd) begin
             tick_now = hit_late;
         end
     end
 
-    always @* begin
-        hit_next = count == half_cycles;
-        hit_late_next = hit;
-        count_next = count + 10'd1;
-        if (restart | tick_now) begin
-            count_next = 10'd2;
-            hit_next = 1'b0;
-            hit_late_next = 1'b0;
-        end
-        if (restart & began) begin
-            count_next = 10'd3;
-            // A half of two cycles is over at once.
-            hit_next = 1'b0;
-        end
-    end
     assign tick = tick_now;
     assign left_cycles = (half_cycles + {9'd0, second & period_cycles[0]} + 10'd2) - count;
 
@@ -75,11 +59,24 @@ module s6_two_channel_half_period (
         if (reset) begin
             count <= 10'd2;
             hit <= 1'b0;
+            is_odd <= 1'b0;
             hit_late <= 1'b0;
         end else begin
-            count <= count_next;
-            hit <= hit_next;
-            hit_late <= hit_late_next;
+            hit <= count == half_cycles;
+            hit_late <= hit;
+            count <= count + 10'd1;
+            if (restart | tick_now) begin
+                count <= 10'd2;
+                hit <= 1'b0;
+                hit_late <= 1'b0;
+            end
+            if (restart & began) begin
+                count <= 10'd3;
+                // A half of two cycles is over at once.
+                hit <= 1'b0;
+            end
+            // Registered, for the clock period may be chosen late.
+            is_odd <= period_cycles[0];
         end
     end
 

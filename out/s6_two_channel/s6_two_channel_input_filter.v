@@ -70,6 +70,7 @@ module s6_two_channel_input_filter (
             end
         end
     end
+
     assign edge_first = middle & !filtered;
     assign level = filtered;
     assign edge_strobe = edge_found;
@@ -100,7 +101,8 @@ module s6_two_channel_input_filter (
 `endif
 `ifndef FORMAL_ANY_STATE
     localparam         HAS_DOUBLE = 1'b0;
-    // short_pulses_ignored unless HAS_DOUBLE (samples at both edges): The level follows DATA only after more samples in a row than the filter ignores.
+    // short_pulses_ignored unless HAS_DOUBLE (samples at both edges): The level follows DATA only after more samples in a row than
+    // the filter ignores.
     reg [4:0] f_other; initial f_other = 5'd0;
     wire f_differs = sample != filtered;
     always @(posedge clock) begin

@@ -11,9 +11,8 @@
 // in_tail    _________/~~~\______    double edge: the answer has been worked upon, some cells later
 // comes      ____________/\______    here the timer begins
 // ago_cycles             2           with what has passed
-//
-// Never are more pulses on the cable than the answer needs: where all are sent before it has begun, CLOCK is held LOW, and the edge comes a cell
-// later.
+// Never are more pulses on the cable than the answer needs: where all are sent before it has begun, CLOCK is held LOW, and the edge
+// comes a cell later.
 module s6_two_channel_last_edge (
     // System clock.
     input  wire         clock,
@@ -23,6 +22,8 @@ module s6_two_channel_last_edge (
     input  wire         start,
     // All pulses of the answer are sent, or on their way to the pin.
     input  wire         no_pulse_left,
+    // Strobe: the last one is counted in this cycle.
+    input  wire         last_sent,
     // None that was sent is still to come back.
     input  wire         none_under_way,
     // The start bit has come.
@@ -51,34 +52,9 @@ module s6_two_channel_last_edge (
     wire         comes_now;
     reg          sent; initial sent = 1'b0;
     reg          stall; initial stall = 1'b0;
-    reg          stall_next;
     reg          waited; initial waited = 1'b0;
-    reg          waited_next;
 
     assign holds_now = sent & !started;
-
-    always @* begin
-        stall_next = stall;
-        if (holds_now) begin
-            stall_next = 1'b1;
-        end
-        if (none_under_way | !running) begin
-            stall_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        waited_next = waited;
-        if (holds_now) begin
-            waited_next = 1'b1;
-        end
-        if (was_center & in_recovery) begin
-            waited_next = 1'b0;
-        end
-        if (start) begin
-            waited_next = 1'b0;
-        end
-    end
     assign all_sent = sent;
     assign stalled = stall;
     assign holds = stall;
@@ -92,9 +68,22 @@ module s6_two_channel_last_edge (
             stall <= 1'b0;
             waited <= 1'b0;
         end else begin
-            sent <= no_pulse_left;
-            stall <= stall_next;
-            waited <= waited_next;
+            sent <= no_pulse_left | last_sent;
+            if (holds_now) begin
+                stall <= 1'b1;
+            end
+            if (none_under_way | !running) begin
+                stall <= 1'b0;
+            end
+            if (holds_now) begin
+                waited <= 1'b1;
+            end
+            if (was_center & in_recovery) begin
+                waited <= 1'b0;
+            end
+            if (start) begin
+                waited <= 1'b0;
+            end
         end
     end
 endmodule

@@ -27,7 +27,8 @@ module s6_two_channel_line_delay (
     input  wire         run,
     // The clock waits: when the cells of all pulses that were sent have ended, a new burst begins.
     input  wire         drain,
-    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another clock.
+    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another
+    // clock.
     input  wire         last_cell,
     // No clock pulse has been sent whose cell has not ended.
     input  wire         none_under_way,
@@ -76,34 +77,23 @@ module s6_two_channel_line_delay (
     wire         half_tick;
     wire   [9:0] half_left_cycles;
     reg   [10:0] delay; initial delay = 11'd0;
-    reg   [10:0] delay_next;
     reg   [10:0] since_rise; initial since_rise = 11'd0;
-    reg   [10:0] since_rise_next;
     reg          timing_armed; initial timing_armed = 1'b0;
-    reg          timing_armed_next;
     reg          delay_over; initial delay_over = 1'b0;
-    reg          delay_over_next;
     reg          cells_run; initial cells_run = 1'b0;
-    reg          cells_run_next;
     reg          second_half; initial second_half = 1'b0;
-    reg          second_half_next;
     reg          sample_strobe; initial sample_strobe = 1'b0;
-    reg          sample_strobe_next;
     reg          center_strobe; initial center_strobe = 1'b0;
-    reg          center_strobe_next;
     reg          center_seen; initial center_seen = 1'b0;
-    reg          center_seen_next;
     reg          not_yet; initial not_yet = 1'b0;
     reg          afresh; initial afresh = 1'b0;
     reg          follow_now; initial follow_now = 1'b0;
     reg          edge_seen; initial edge_seen = 1'b0;
-    reg          edge_seen_next;
     reg          edge_late; initial edge_late = 1'b0;
-    reg          edge_late_next;
     reg    [5:0] edge_error; initial edge_error = 6'd0;
-    reg    [5:0] edge_error_next;
     reg          edge_outside; initial edge_outside = 1'b0;
-    reg          edge_outside_next;
+    // A clock pulse whose cell counts left the receiver in the cycle before.
+    reg          pulse_leaves; initial pulse_leaves = 1'b0;
     wire         _unused_ok = &{1'b0, places[11], half_left_cycles};
 
     s6_two_channel_half_period u_half (
@@ -128,45 +118,9 @@ module s6_two_channel_line_delay (
     assign sample_now = sample_strobe;
     assign center_now = acquired | center_strobe;
     assign half_second = second_half;
-
-    always @* begin
-        timing_armed_next = timing_armed;
-        second_half_next = second_half;
-        cells_run_next = cells_run;
-        since_rise_next = since_rise + 11'd1;
-        if (first_rise) begin
-            timing_armed_next = 1'b1;
-            // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles earlier.
-            since_rise_next = 11'd3;
-            if (acquire) begin
-                since_rise_next = 11'd1;
-            end
-        end
-        delay_over_next = timing_armed & (since_rise == delay_now);
-        // The half period timer runs one cycle ahead: its ticks are registered before they are used.
-        sample_strobe_next = half_tick & !second_half & cells_run;
-        center_strobe_next = (half_tick & second_half) | (first_center & !acquired);
-        if (half_tick & cells_run) begin
-            second_half_next = !second_half;
-        end
-        if (first_center) begin
-            cells_run_next = 1'b1;
-            second_half_next = 1'b0;
-        end
-        if (afresh) begin
-            cells_run_next = 1'b0;
-            second_half_next = 1'b0;
-            timing_armed_next = 1'b0;
-            delay_over_next = 1'b0;
-            sample_strobe_next = 1'b0;
-            center_strobe_next = 1'b0;
-        end
-    end
     assign half_restart = !cells_run | last_cell;
     assign half_began = acquired;
-    // The pulse of a cell, and how far its data edge is from the middle.
-    // Of the edges before an acquired start bit that which launched it is the only one that counts.
-    assign pulse = acquired | (will_rise & (!acquire | cells_run));
+    assign pulse = pulse_leaves;
     assign edge_now = edge_seen | data_edge;
 
     always @* begin
@@ -183,44 +137,6 @@ module s6_two_channel_line_delay (
         end
     end
 
-    always @* begin
-        delay_next = delay;
-        if (follow_now) begin
-            delay_next = delay + step;
-        end
-        if (acquired) begin
-            delay_next = since_rise;
-        end
-    end
-
-    always @* begin
-        center_seen_next = center_seen;
-        edge_seen_next = edge_seen;
-        edge_late_next = edge_late;
-        edge_error_next = edge_error;
-        edge_outside_next = edge_outside;
-        // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
-        // is as good as one that is seen with it: the limits of the bit are as far from both.
-        if (center_now) begin
-            center_seen_next = 1'b1;
-        end
-        if (data_edge) begin
-            edge_seen_next = 1'b1;
-            edge_late_next = late_now;
-        end
-        if ((center_seen & !edge_now) | (edge_seen & !center_seen)) begin
-            edge_error_next = edge_error + 6'd1;
-            if (edge_error == start_window_cycles) begin
-                edge_outside_next = 1'b1;
-            end
-        end
-        if (sample_now | not_yet) begin
-            center_seen_next = 1'b0;
-            edge_seen_next = 1'b0;
-            edge_error_next = 6'd0;
-            edge_outside_next = 1'b0;
-        end
-    end
     // All cells of a burst have ended: the next rising edge begins a new one.
     assign over = !run | (drain & none_under_way);
     // Places of the cells, and what was measured.
@@ -247,24 +163,71 @@ module s6_two_channel_line_delay (
             edge_late <= 1'b0;
             edge_error <= 6'd0;
             edge_outside <= 1'b0;
+            pulse_leaves <= 1'b0;
         end else begin
-            delay <= delay_next;
-            since_rise <= since_rise_next;
-            timing_armed <= timing_armed_next;
-            delay_over <= delay_over_next;
-            cells_run <= cells_run_next;
-            second_half <= second_half_next;
-            sample_strobe <= sample_strobe_next;
-            center_strobe <= center_strobe_next;
-            center_seen <= center_seen_next;
+            if (follow_now) begin
+                delay <= delay + step;
+            end
+            if (acquired) begin
+                delay <= since_rise;
+            end
+            since_rise <= since_rise + 11'd1;
+            if (first_rise) begin
+                timing_armed <= 1'b1;
+                // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles
+                // earlier.
+                since_rise <= 11'd3;
+                if (acquire) begin
+                    since_rise <= 11'd1;
+                end
+            end
+            delay_over <= timing_armed & (since_rise == delay_now);
+            // The half period timer runs one cycle ahead: its ticks are registered before they are used.
+            sample_strobe <= half_tick & !second_half & cells_run;
+            center_strobe <= (half_tick & second_half) | (first_center & !acquired);
+            if (half_tick & cells_run) begin
+                second_half <= !second_half;
+            end
+            if (first_center) begin
+                cells_run <= 1'b1;
+                second_half <= 1'b0;
+            end
+            if (afresh) begin
+                cells_run <= 1'b0;
+                second_half <= 1'b0;
+                timing_armed <= 1'b0;
+                delay_over <= 1'b0;
+                sample_strobe <= 1'b0;
+                center_strobe <= 1'b0;
+            end
+            // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
+            // is as good as one that is seen with it: the limits of the bit are as far from both.
+            if (center_now) begin
+                center_seen <= 1'b1;
+            end
+            if (data_edge) begin
+                edge_seen <= 1'b1;
+                edge_late <= late_now;
+            end
+            if ((center_seen & !edge_now) | (edge_seen & !center_seen)) begin
+                edge_error <= edge_error + 6'd1;
+                if (edge_error == start_window_cycles) begin
+                    edge_outside <= 1'b1;
+                end
+            end
+            if (sample_now | not_yet) begin
+                center_seen <= 1'b0;
+                edge_seen <= 1'b0;
+                edge_error <= 6'd0;
+                edge_outside <= 1'b0;
+            end
             not_yet <= over | (acquire & !hunting);
             afresh <= over;
             // The tracked delay goes where the start edge was.
             follow_now <= follow & (|edge_error);
-            edge_seen <= edge_seen_next;
-            edge_late <= edge_late_next;
-            edge_error <= edge_error_next;
-            edge_outside <= edge_outside_next;
+            // The pulse of a cell, and how far its data edge is from the middle.
+            // Of the edges before an acquired start bit that which launched it is the only one that counts.
+            pulse_leaves <= acquired | (will_rise & (!acquire | cells_run));
         end
     end
 endmodule

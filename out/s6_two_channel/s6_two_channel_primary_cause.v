@@ -6,9 +6,9 @@
 
 // Primary cause: one out of all the flags of a frame.
 module s6_two_channel_primary_cause (
-    // Raw flags, see flag.
+    // Raw flags, one bit for each fault; bits as in the register map.
     input  wire  [19:0] flags,
-    // Primary cause, see cause.
+    // Primary cause; numbers as in the register map.
     output reg    [4:0] cause
 );
     wire         _unused_ok = &{1'b0, flags[8]};

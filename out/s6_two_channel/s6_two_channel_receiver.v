@@ -9,13 +9,12 @@
 // field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
 // sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
 // align     __________________________________________/~~~~\____________________
-//
 // The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
-// with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word before
-// that: at all four places its last bit has the same distance from a multiple of 15.
-// left counts cells down to the end of the frame, to_send the clock pulses that they need: the difference is under way. The
-// clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
-// shortest answer while its start bit may still be on the cable.
+// with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word
+// before that: at all four places its last bit has the same distance from a multiple of 15. left counts cells down to the end of
+// the frame, to_send the clock pulses that they need: the difference is under way. The clock generator stops when none is to be
+// sent: so the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit may
+// still be on the cable.
 module s6_two_channel_receiver (
     // System clock.
     input  wire         clock,
@@ -61,6 +60,8 @@ module s6_two_channel_receiver (
     output wire         started,
     // All clock pulses have been sent, or are on their way to the pin.
     output wire         all_sent,
+    // Strobe: the last one is counted in this cycle.
+    output wire         last_sent,
     // The cell of each pulse that was sent has ended.
     output wire         none_under_way,
     // The counts of cells and pulses agree that this cell is the last one.
@@ -126,6 +127,10 @@ module s6_two_channel_receiver (
     reg    [3:0] field_next;
     reg    [6:0] left; initial left = 7'd0;
     reg    [6:0] left_next;
+    // The cell that comes is the last one of the payload.
+    reg          payload_ends; initial payload_ends = 1'b0;
+    // The cell that comes is the last one of the CRC.
+    reg          crc_ends; initial crc_ends = 1'b0;
     reg    [6:0] to_send; initial to_send = 7'd0;
     reg    [6:0] to_send_next;
     reg   [49:0] word; initial word = 50'd0;
@@ -137,7 +142,6 @@ module s6_two_channel_receiver (
     reg          f2_bit; initial f2_bit = 1'b1;
     reg          f2_bit_next;
     reg    [4:0] crc_bits; initial crc_bits = 5'd0;
-    reg    [4:0] crc_bits_next;
     reg    [4:0] crc_calc; initial crc_calc = 5'd0;
     reg    [4:0] crc_calc_next;
     reg          take_crc; initial take_crc = 1'b0;
@@ -178,7 +182,9 @@ module s6_two_channel_receiver (
             skip_step = rise;
         end
     end
-    assign start_sample = (field == FIELD_START) & sample & level;
+
+    // A sample comes two cycles after the one before at least: the state has been registered by then.
+    assign start_sample = hunting_now & sample & level;
     // Cells and pulses.
     // Where a bit has few system clock cycles cells go on until the end has been seen.
     assign counts = sample & ((field != FIELD_DONE) | (|left[6:1]));
@@ -222,6 +228,7 @@ module s6_two_channel_receiver (
             aligned_at = 4'd6;
         end
     end
+
     assign is_taken = last_taken;
     assign crc_fits = crc_bits == crc_calc;
 
@@ -259,7 +266,6 @@ module s6_two_channel_receiver (
         if (one_less & !one_more) begin
             to_send_next = to_send - 7'd1;
         end
-        // The parts of an answer, one after the other.
         case (field)
             FIELD_SKIP: begin
                 if (skip_step) begin
@@ -271,9 +277,6 @@ module s6_two_channel_receiver (
                 end
             end
             FIELD_START: begin
-                if (start_sample & edge_in_window) begin
-                    field_next = FIELD_F1;
-                end
             end
             FIELD_F1: begin
                 if (sample) begin
@@ -296,7 +299,7 @@ module s6_two_channel_receiver (
                 if (sample) begin
                     covered_bit = 1'b1;
                     // This bit, five of the CRC, and what comes behind.
-                    if (left == 7'd7) begin
+                    if (payload_ends) begin
                         last_payload_next = 1'b1;
                         field_next = FIELD_CRC;
                     end
@@ -305,7 +308,7 @@ module s6_two_channel_receiver (
             FIELD_CRC: begin
                 if (sample) begin
                     crc_bit = 1'b1;
-                    if (left == 7'd2) begin
+                    if (crc_ends) begin
                         last_taken_next = 1'b1;
                         field_next = FIELD_DONE;
                     end
@@ -341,6 +344,10 @@ module s6_two_channel_receiver (
                 field_next = FIELD_DONE;
             end
         endcase
+        // Not in its arm: the edge of the start bit is known last.
+        if (start_sample & edge_in_window) begin
+            field_next = FIELD_F1;
+        end
         if (shift) begin
             word_next = shifted;
         end
@@ -375,16 +382,6 @@ module s6_two_channel_receiver (
         end
     end
 
-    always @* begin
-        crc_bits_next = crc_bits;
-        // The CRC as received, and the guard's look at the stored word.
-        if (crc_bit) begin
-            crc_bits_next = {crc_bits[3:0], level};
-        end
-        if (put) begin
-            crc_bits_next = put_crc;
-        end
-    end
     // How far the answer is.
     assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
     assign hunting = hunting_now;
@@ -392,6 +389,7 @@ module s6_two_channel_receiver (
     assign start_refused = refused;
     assign started = started_now;
     assign all_sent = !(|to_send);
+    assign last_sent = (to_send == 7'd1) & one_less & !one_more;
     assign none_under_way = to_send == left;
     assign all_used = used;
     assign all_ended = ended;
@@ -400,6 +398,7 @@ module s6_two_channel_receiver (
         done = done_now;
         finished = done_now;
     end
+
     assign payload = word[47:0];
     assign f1 = f1_bit;
     assign f2 = f2_bit;
@@ -412,6 +411,8 @@ module s6_two_channel_receiver (
         if (reset) begin
             field <= FIELD_DONE;
             left <= 7'd0;
+            payload_ends <= 1'b0;
+            crc_ends <= 1'b0;
             to_send <= 7'd0;
             word <= 50'd0;
             covered <= 4'd0;
@@ -438,12 +439,22 @@ module s6_two_channel_receiver (
         end else begin
             field <= field_next;
             left <= left_next;
+            // The parts of an answer, one after the other.
+            // Compared in the cycle before: a count stays for two cycles at least.
+            payload_ends <= left == 7'd7;
+            crc_ends <= left == 7'd2;
             to_send <= to_send_next;
             word <= word_next;
             covered <= covered_d;
             f1_bit <= f1_bit_next;
             f2_bit <= f2_bit_next;
-            crc_bits <= crc_bits_next;
+            // The CRC as received, and the guard's look at the stored word.
+            if (crc_bit) begin
+                crc_bits <= {crc_bits[3:0], level};
+            end
+            if (put) begin
+                crc_bits <= put_crc;
+            end
             crc_calc <= crc_calc_next;
             take_crc <= last_payload;
             align <= align_next;
@@ -451,7 +462,8 @@ module s6_two_channel_receiver (
             align_first <= take_crc;
             last_taken <= last_taken_next;
             done_now <= is_taken;
-            // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
+            // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the
+            // cause's path.
             used <= all_sent & (left == 7'd1);
             ended <= all_sent & none_under_way;
             crc_equal <= crc_fits;
@@ -485,9 +497,11 @@ module s6_two_channel_receiver (
     wire [0:0] low_separator = 1'd0;
     wire [0:0] separator_then = 1'd0;
     wire [0:0] new_block = 1'd0;
-    // crc_as_received: The CRC of a frame that is all position is found right exactly if it is what a serial register makes of the bits as sampled, at every width and command.
+    // crc_as_received: The CRC of a frame that is all position is found right exactly if it is what a serial register makes of the
+    // bits as sampled, at every width and command.
     // error_bits_as_received: F1, and F2 of EnDat 2.2, are the first samples after the start bit of a frame that is all position.
-    // bits_counted: A frame that is all position is whole after F1, F2, as many position bits as were set and five CRC bits: no sample more or less.
+    // bits_counted: A frame that is all position is whole after F1, F2, as many position bits as were set and five CRC bits: no
+    // sample more or less.
     reg f_same; initial f_same = 1'b0;
     reg f_open; initial f_open = 1'b0;
     reg f_whole; initial f_whole = 1'b0;

@@ -12,16 +12,14 @@
 //        trigger count -----+
 //        ring byte ---------OR--> read_byte
 //        results of channels+
-//
-// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and kept until
-// done; an access that comes before is not begun. Only which byte is shown follows the front: a front that changes the address reads another byte.
-//
-// Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them, and not from
-// the first to the last result of a trigger: half of it is new, the other half is not.
-//
-// The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it would have no
-// end. For a host that reads in step with the triggers, so that the words may never follow between two reads,
-// they follow as the read begins, if the second trigger has come by then. See docs/host-link.md.
+// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and kept
+// until done; an access that comes before is not begun. Only which byte is shown follows the front: a front that changes the
+// address reads another byte.
+// Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them,
+// and not from the first to the last result of a trigger: half of it is new, the other half is not.
+// The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it
+// would have no end. For a host that reads in step with the triggers, so that the words may never follow between two reads, they
+// follow as the read begins, if the second trigger has come by then. See docs/host-link.md.
 module s6_two_channel_register_bank (
     // System clock.
     input  wire         clock,
@@ -33,7 +31,8 @@ module s6_two_channel_register_bank (
     input  wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     input  wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
+    // nothing.
     input  wire         access,
     // With access: write a word; low = read a byte.
     input  wire         write,
@@ -151,16 +150,12 @@ module s6_two_channel_register_bank (
     wire  [31:0] ring_word2;
     // Word address of the access under way; follows the front while no access runs.
     reg   [10:0] held_address; initial held_address = 11'd0;
-    reg   [10:0] held_address_next;
     // High from the start of an access until its last byte has passed or its byte is ready.
     reg          turning; initial turning = 1'b0;
-    reg          turning_next;
     // Byte of the ring block that is next at the head, 0 to 11; 0 while no access runs.
     reg    [3:0] byte_at; initial byte_at = 4'd0;
-    reg    [3:0] byte_at_next;
     // Block of the ring that is next at the head: 0 = the card, n + 1 = channel n.
     reg    [3:0] block_at; initial block_at = 4'd0;
-    reg    [3:0] block_at_next;
     // High while the ring turns: one cycle after turning, for accesses that need a whole turn.
     reg          turn; initial turn = 1'b0;
     // High while a byte of the accessed configuration word is at the head.
@@ -173,48 +168,36 @@ module s6_two_channel_register_bank (
     reg          done_strobe; initial done_strobe = 1'b0;
     // High if the access under way is a write; set or cleared when an access starts.
     reg          is_write; initial is_write = 1'b0;
-    reg          is_write_next;
     // High if the accessed word is a configuration word on the ring.
     reg          config_page; initial config_page = 1'b0;
-    reg          config_page_next;
     // Result words that are not read, one bit each; low for the selected word only.
     reg    [5:0] skipped_words; initial skipped_words = 6'd63;
-    reg    [5:0] skipped_words_next;
     // Channels whose results are not read, one bit each; low for the selected channel only.
     reg    [7:0] skipped_channels; initial skipped_channels = 8'd255;
-    reg    [7:0] skipped_channels_next;
     // High unless the front's address is one of the card's constant words.
     reg          rom_skip; initial rom_skip = 1'b1;
     // High unless the front's address is the word trigger_count.
     reg          count_skip; initial count_skip = 1'b1;
     // Selected byte of the constant word; 0 while rom_skip is high.
     reg    [7:0] rom_byte; initial rom_byte = 8'd0;
-    reg    [7:0] rom_byte_next;
     // Trigger count of the held results; loaded together with them.
     reg   [31:0] count_held; initial count_held = 32'd0;
-    reg   [31:0] count_held_next;
     // Selected byte of count_held; 0 while count_skip is high.
     reg    [7:0] count_byte; initial count_byte = 8'd0;
-    reg    [7:0] count_byte_next;
     // Configuration byte that was read; cleared when an access starts.
     reg    [7:0] ring_byte; initial ring_byte = 8'd0;
-    reg    [7:0] ring_byte_next;
     // Byte that the front reads: OR of all sources, of which at most one is not 0.
     reg    [7:0] byte_value; initial byte_value = 8'd0;
     // High for one cycle after a write of the trigger bit.
     reg          trigger_strobe; initial trigger_strobe = 1'b0;
     // One bit per channel, high for one cycle after a write of the word calibrate.
     reg    [7:0] calibrate_strobe; initial calibrate_strobe = 8'd0;
-    reg    [7:0] calibrate_strobe_next;
     // Enabled trigger sources; copied from the ring while it is at rest.
     reg    [2:0] active_sources; initial active_sources = 3'd3;
-    reg    [2:0] active_sources_next;
     // Period of the trigger timer; copied from the ring while it is at rest.
     reg   [23:0] active_period; initial active_period = 24'h2710;
-    reg   [23:0] active_period_next;
     // High while the host holds the results; copied from the ring while it is at rest.
     reg          hold; initial hold = 1'b0;
-    reg          hold_next;
     // blocked_now of the cycle before: high while the host reads or holds results.
     reg          blocked; initial blocked = 1'b1;
     // reading of the cycle before.
@@ -223,10 +206,8 @@ module s6_two_channel_register_bank (
     reg          mixed; initial mixed = 1'b0;
     // High if a trigger has been taken since the held results were last loaded.
     reg          one_gone; initial one_gone = 1'b0;
-    reg          one_gone_next;
     // High if two triggers have been taken since the held results were last loaded.
     reg          overdue; initial overdue = 1'b0;
-    reg          overdue_next;
     wire         _unused_ok = &{1'b0, write_data[23:8], ring_word0[31:3], ring_word1[31:24], ring_word2[31:1]};
 
     s6_two_channel_config_ring_1 u_ring (
@@ -240,40 +221,13 @@ module s6_two_channel_register_bank (
         .word2(ring_word2)
     );
 
-    always @* begin
-        active_sources_next = active_sources;
-        active_period_next = active_period;
-        hold_next = hold;
-        if (!turn) begin
-            active_sources_next = ring_word0[2:0];
-            active_period_next = ring_word1[23:0];
-            hold_next = ring_word2[0];
-        end
-    end
     // Address and direction of an access are kept from its start to its end, whatever the front shows.
     assign busy = turning | ended;
-
-    always @* begin
-        held_address_next = held_address;
-        if (!busy) begin
-            held_address_next = word_address;
-        end
-    end
     assign starts = access & !busy;
-
-    always @* begin
-        ring_byte_next = ring_byte;
-        if (byte_passes) begin
-            ring_byte_next = ring_byte_out[7:0];
-        end
-        if (starts) begin
-            ring_byte_next = 8'd0;
-        end
-    end
     assign begins = starts;
     assign address = held_address;
-    // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
-    // They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
+    // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its
+    // own. They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
     assign whole_turn = config_page;
     assign block_end = byte_at == 4'd11;
 
@@ -285,41 +239,11 @@ module s6_two_channel_register_bank (
         end
     end
 
-    always @* begin
-        byte_at_next = byte_at;
-        block_at_next = block_at;
-        turning_next = turning;
-        is_write_next = is_write;
-        if (turning) begin
-            byte_at_next = byte_at + 4'd1;
-            if (block_end) begin
-                byte_at_next = 4'd0;
-                block_at_next = block_at + 4'd1;
-            end
-            if (at_end) begin
-                turning_next = 1'b0;
-            end
-        end else begin
-            byte_at_next = 4'd0;
-            block_at_next = 4'd0;
-        end
-        if (starts) begin
-            turning_next = 1'b1;
-            is_write_next = write;
-        end
-    end
     assign ring_turn = turn;
     assign ring_home = !turn;
     assign done = done_strobe;
     // Configuration: the ring carries 3 of the 8 words that a block has room for.
     assign low_page = in_range & !(|word_address[10:9]);
-
-    always @* begin
-        config_page_next = config_page;
-        if (!busy) begin
-            config_page_next = low_page & word_address[8] & !word_address[7] & !word_address[2];
-        end
-    end
     assign low_address = word_address[8:0];
     assign at_word = turning & config_page & (block_at == held_address[6:3]) & (byte_at[3:2] == held_address[1:0]);
     assign written = write_data[31:24];
@@ -330,6 +254,7 @@ module s6_two_channel_register_bank (
             head = {1'b0, written};
         end
     end
+
     assign take_byte = passes;
     assign ring_out = head;
     // The card's own words.
@@ -362,37 +287,8 @@ module s6_two_channel_register_bank (
         endcase
     end
 
-    always @* begin
-        rom_byte_next = rom_byte;
-        count_byte_next = count_byte;
-        case (lane)
-            2'd0: begin
-                rom_byte_next = rom_word[31:24];
-                count_byte_next = count_held[31:24];
-            end
-            2'd1: begin
-                rom_byte_next = rom_word[23:16];
-                count_byte_next = count_held[23:16];
-            end
-            2'd2: begin
-                rom_byte_next = rom_word[15:8];
-                count_byte_next = count_held[15:8];
-            end
-            default: begin
-                rom_byte_next = rom_word[7:0];
-                count_byte_next = count_held[7:0];
-            end
-        endcase
-    end
     // Strobes, and the settings of the card.
     assign strobe = starts & write & low_page;
-
-    always @* begin
-        calibrate_strobe_next = 8'd0;
-        if (strobe & (low_address == CALIBRATE_AT)) begin
-            calibrate_strobe_next = write_data[7:0];
-        end
-    end
     assign trigger_now = trigger_strobe;
     assign calibrate = calibrate_strobe;
     assign sources = active_sources;
@@ -401,88 +297,8 @@ module s6_two_channel_register_bank (
     assign blocked_now = reading | hold;
     assign mixed_now = owes & (brought | mixed);
     assign load_now = !blocked & (!mixed_now | (blocked_now & overdue));
-
-    always @* begin
-        one_gone_next = one_gone;
-        overdue_next = overdue;
-        if (load_now) begin
-            one_gone_next = 1'b0;
-            overdue_next = 1'b0;
-        end
-        if (taken) begin
-            one_gone_next = 1'b1;
-            overdue_next = one_gone & !load_now;
-        end
-    end
-
-    always @* begin
-        count_held_next = count_held;
-        if (load_now) begin
-            count_held_next = trigger_count;
-        end
-    end
     assign load = load_now;
     assign result_page = low_page & (&word_address[8:7]);
-
-    always @* begin
-        skipped_words_next = 6'd63;
-        case (word_address[2:0])
-            3'd0: begin
-                skipped_words_next = 6'd62;
-            end
-            3'd1: begin
-                skipped_words_next = 6'd61;
-            end
-            3'd2: begin
-                skipped_words_next = 6'd59;
-            end
-            3'd3: begin
-                skipped_words_next = 6'd55;
-            end
-            3'd4: begin
-                skipped_words_next = 6'd47;
-            end
-            3'd5: begin
-                skipped_words_next = 6'd31;
-            end
-            default: begin
-            end
-        endcase
-    end
-
-    always @* begin
-        skipped_channels_next = 8'd255;
-        if (result_page) begin
-            case (word_address[6:3])
-                4'd0: begin
-                    skipped_channels_next = 8'd254;
-                end
-                4'd1: begin
-                    skipped_channels_next = 8'd253;
-                end
-                4'd2: begin
-                    skipped_channels_next = 8'd251;
-                end
-                4'd3: begin
-                    skipped_channels_next = 8'd247;
-                end
-                4'd4: begin
-                    skipped_channels_next = 8'd239;
-                end
-                4'd5: begin
-                    skipped_channels_next = 8'd223;
-                end
-                4'd6: begin
-                    skipped_channels_next = 8'd191;
-                end
-                4'd7: begin
-                    skipped_channels_next = 8'd127;
-                end
-                default: begin
-                end
-            endcase
-        end
-    end
     assign word_skip = skipped_words;
     assign channel_skip = skipped_channels;
     assign read_byte = byte_value;
@@ -518,37 +334,124 @@ module s6_two_channel_register_bank (
             one_gone <= 1'b0;
             overdue <= 1'b0;
         end else begin
-            held_address <= held_address_next;
-            turning <= turning_next;
-            byte_at <= byte_at_next;
-            block_at <= block_at_next;
+            if (!busy) begin
+                held_address <= word_address;
+            end
+            if (turning) begin
+                byte_at <= byte_at + 4'd1;
+                if (block_end) begin
+                    byte_at <= 4'd0;
+                    block_at <= block_at + 4'd1;
+                end
+                if (at_end) begin
+                    turning <= 1'b0;
+                end
+            end else begin
+                byte_at <= 4'd0;
+                block_at <= 4'd0;
+            end
+            if (starts) begin
+                turning <= 1'b1;
+                is_write <= write;
+            end
             turn <= turning & whole_turn;
             passes <= at_word;
             byte_passes <= at_word & (byte_at[1:0] == lane);
             ended <= turning & at_end;
             done_strobe <= ended;
-            is_write <= is_write_next;
-            config_page <= config_page_next;
-            skipped_words <= skipped_words_next;
-            skipped_channels <= skipped_channels_next;
+            if (!busy) begin
+                config_page <= low_page & word_address[8] & !word_address[7] & !word_address[2];
+            end
+            skipped_words <= 6'd63;
+            case (word_address[2:0])
+                3'd0: begin
+                    skipped_words <= 6'd62;
+                end
+                3'd1: begin
+                    skipped_words <= 6'd61;
+                end
+                3'd2: begin
+                    skipped_words <= 6'd59;
+                end
+                3'd3: begin
+                    skipped_words <= 6'd55;
+                end
+                3'd4: begin
+                    skipped_words <= 6'd47;
+                end
+                3'd5: begin
+                    skipped_words <= 6'd31;
+                end
+                default: begin
+                end
+            endcase
+            skipped_channels <= 8'd255;
+            if (result_page) begin
+                case (word_address[6:3])
+                    4'd0: begin
+                        skipped_channels <= 8'd254;
+                    end
+                    4'd1: begin
+                        skipped_channels <= 8'd253;
+                    end
+                    4'd2: begin
+                        skipped_channels <= 8'd251;
+                    end
+                    4'd3: begin
+                        skipped_channels <= 8'd247;
+                    end
+                    4'd4: begin
+                        skipped_channels <= 8'd239;
+                    end
+                    4'd5: begin
+                        skipped_channels <= 8'd223;
+                    end
+                    4'd6: begin
+                        skipped_channels <= 8'd191;
+                    end
+                    4'd7: begin
+                        skipped_channels <= 8'd127;
+                    end
+                    default: begin
+                    end
+                endcase
+            end
             rom_skip <= !card_page | word_address[3];
             count_skip <= !low_page | (low_address != TRIGGER_COUNT_AT);
-            count_held <= count_held_next;
-            ring_byte <= ring_byte_next;
+            if (load_now) begin
+                count_held <= trigger_count;
+            end
+            if (byte_passes) begin
+                ring_byte <= ring_byte_out[7:0];
+            end
+            if (starts) begin
+                ring_byte <= 8'd0;
+            end
             // The byte that is read.
             byte_value <= rom_byte | count_byte | ring_byte | channel_byte | part_byte;
             trigger_strobe <= strobe & (low_address == TRIGGER_NOW_AT) & write_data[0];
-            calibrate_strobe <= calibrate_strobe_next;
-            active_sources <= active_sources_next;
-            active_period <= active_period_next;
-            hold <= hold_next;
+            calibrate_strobe <= 8'd0;
+            if (strobe & (low_address == CALIBRATE_AT)) begin
+                calibrate_strobe <= write_data[7:0];
+            end
+            if (!turn) begin
+                active_sources <= ring_word0[2:0];
+                active_period <= ring_word1[23:0];
+                hold <= ring_word2[0];
+            end
             blocked <= blocked_now;
             // Results.
             // Reading blocks a cycle late: the first byte is read later still.
             read_before <= reading;
             mixed <= mixed_now & !taken;
-            one_gone <= one_gone_next;
-            overdue <= overdue_next;
+            if (load_now) begin
+                one_gone <= 1'b0;
+                overdue <= 1'b0;
+            end
+            if (taken) begin
+                one_gone <= 1'b1;
+                overdue <= one_gone & !load_now;
+            end
         end
     end
 
@@ -556,7 +459,20 @@ module s6_two_channel_register_bank (
         if (rom_skip) begin
             rom_byte <= 8'd0;
         end else begin
-            rom_byte <= rom_byte_next;
+            case (lane)
+                2'd0: begin
+                    rom_byte <= rom_word[31:24];
+                end
+                2'd1: begin
+                    rom_byte <= rom_word[23:16];
+                end
+                2'd2: begin
+                    rom_byte <= rom_word[15:8];
+                end
+                default: begin
+                    rom_byte <= rom_word[7:0];
+                end
+            endcase
         end
     end
 
@@ -564,7 +480,20 @@ module s6_two_channel_register_bank (
         if (count_skip) begin
             count_byte <= 8'd0;
         end else begin
-            count_byte <= count_byte_next;
+            case (lane)
+                2'd0: begin
+                    count_byte <= count_held[31:24];
+                end
+                2'd1: begin
+                    count_byte <= count_held[23:16];
+                end
+                2'd2: begin
+                    count_byte <= count_held[15:8];
+                end
+                default: begin
+                    count_byte <= count_held[7:0];
+                end
+            endcase
         end
     end
 
@@ -576,7 +505,8 @@ module s6_two_channel_register_bank (
 `endif
 `ifndef FORMAL_ANY_STATE
     // read_is_one_snapshot: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
-    // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins, whatever other channels owe.
+    // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins,
+    // whatever other channels owe.
     reg [1:0] f_came; initial f_came = 2'd0;
     always @(posedge clock) begin
         if (taken & (load | (f_came != 2'd2))) f_came <= load ? 2'd1 : f_came + 2'd1;

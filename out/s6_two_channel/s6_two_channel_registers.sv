@@ -4,7 +4,8 @@
 //
 // ..._WORD is the address that the host link (UART) takes: it counts words of 32 bits.
 // ..._BYTE is the same place on a bus that counts bytes: 4 * ..._WORD.
-// Registers that each channel has take the channel: ..._WORD(0) is that of channel 0; ..._BASE_... of such a block is that of channel 0.
+// Registers that each channel has take the channel: ..._WORD(0) is that of channel 0; ..._BASE_... of such a block is that of
+// channel 0.
 // Content of a field in a word that was read: (word & ..._MASK) >> ..._SHIFT.
 package s6_two_channel_registers;
 
@@ -239,7 +240,8 @@ package s6_two_channel_registers;
     // skip: Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources
     localparam logic [31:0] CONFIG_FRAME_SKIP_SHIFT = 32'd11;
     localparam logic [31:0] CONFIG_FRAME_SKIP_MASK = 32'h0000F800;
-    // position_bits: Position width, 1..48; T-format: bits of angle and turns together if limits.range says rotary, else no meaning, as command (bits)
+    // position_bits: Position width, 1..48; T-format: bits of angle and turns together if limits.range says rotary, else no
+    // meaning, as command (bits)
     localparam logic [31:0] CONFIG_FRAME_POSITION_BITS_SHIFT = 32'd16;
     localparam logic [31:0] CONFIG_FRAME_POSITION_BITS_MASK = 32'h003F0000;
     // ignore_pin: 1: the trigger pin is not for this channel
@@ -268,7 +270,8 @@ package s6_two_channel_registers;
     // first_low_extra_cycles: First low phase minus half a period (tST) (cycles)
     localparam logic [31:0] CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_SHIFT = 32'd0;
     localparam logic [31:0] CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_MASK = 32'h000007FF;
-    // multi_turn_bits: Upper bits of the position that count turns, if limits.range says rotary; for the host only. T-format: of bits 47..24, up to 24 (bits)
+    // multi_turn_bits: Upper bits of the position that count turns, if limits.range says rotary; for the host only. T-format: of
+    // bits 47..24, up to 24 (bits)
     localparam logic [31:0] CONFIG_TIMING_MULTI_TURN_BITS_SHIFT = 32'd11;
     localparam logic [31:0] CONFIG_TIMING_MULTI_TURN_BITS_MASK = 32'h0000F800;
     // start_window_cycles: The start edge must come within plus or minus this of its expected phase (cycles)
@@ -390,7 +393,8 @@ package s6_two_channel_registers;
     // value: 0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0
     localparam logic [31:0] RESULT_POSITION_HIGH_VALUE_SHIFT = 32'd0;
     localparam logic [31:0] RESULT_POSITION_HIGH_VALUE_MASK = 32'h0000FFFF;
-    // crc: CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more; T-format: 0
+    // crc: CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more;
+    // T-format: 0
     localparam logic [31:0] RESULT_POSITION_HIGH_CRC_SHIFT = 32'd16;
     localparam logic [31:0] RESULT_POSITION_HIGH_CRC_MASK = 32'h001F0000;
     // f2: The position came with F2 = 1 (EnDat 2.2); F1 of a good position is 0
@@ -400,7 +404,8 @@ package s6_two_channel_registers;
     localparam logic [31:0] RESULT_POSITION_HIGH_WIDTH_SHIFT = 32'd24;
     localparam logic [31:0] RESULT_POSITION_HIGH_WIDTH_MASK = 32'h3F000000;
 
-    // ro: First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request.
+    // ro: First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format:
+    // start bit of the request.
     function automatic logic [31:0] RESULT_TIMESTAMP_WORD(input logic [31:0] channel);
         RESULT_TIMESTAMP_WORD = 32'h183 + 32'd8 * channel;
     endfunction
@@ -453,7 +458,8 @@ package s6_two_channel_registers;
         RESULT_AGE_RECOVERY_BYTE = 32'h0614 + 32'd32 * channel;
     endfunction
     localparam logic [31:0] RESULT_AGE_RECOVERY_RESET = 32'h00000000;
-    // age_us: Age of the position: 0 until its frame has ended, counted from there, also while results are held; stops at 65535 (us)
+    // age_us: Age of the position: 0 until its frame has ended, counted from there, also while results are held; stops at 65535
+    // (us)
     localparam logic [31:0] RESULT_AGE_RECOVERY_AGE_US_SHIFT = 32'd0;
     localparam logic [31:0] RESULT_AGE_RECOVERY_AGE_US_MASK = 32'h0000FFFF;
     // recovery_cycles: Recovery time tm of the last frame (cycles)

@@ -4,8 +4,10 @@
 --
 -- ..._WORD is the address that the host link (UART) takes: it counts words of 32 bits.
 -- ..._BYTE is the same place on a bus that counts bytes: 4 * ..._WORD.
--- Registers that each channel has take the channel: ..._WORD(0) is that of channel 0; ..._BASE_... of such a block is that of channel 0.
--- Places, numbers of bits and codes are of type natural; what a word may contain (..._MASK, ..._RESET, single bits) is a vector of 32 bits.
+-- Registers that each channel has take the channel: ..._WORD(0) is that of channel 0; ..._BASE_... of such a block is that of
+-- channel 0.
+-- Places, numbers of bits and codes are of type natural; what a word may contain (..._MASK, ..._RESET, single bits) is a vector of
+-- 32 bits.
 library ieee;
 use ieee.std_logic_1164.all;
 
@@ -237,7 +239,8 @@ package s6_two_channel_registers is
     -- skip: Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources
     constant CONFIG_FRAME_SKIP_SHIFT : natural := 11;
     constant CONFIG_FRAME_SKIP_MASK : word_t := x"0000F800";
-    -- position_bits: Position width, 1..48; T-format: bits of angle and turns together if limits.range says rotary, else no meaning, as command (bits)
+    -- position_bits: Position width, 1..48; T-format: bits of angle and turns together if limits.range says rotary, else no
+    -- meaning, as command (bits)
     constant CONFIG_FRAME_POSITION_BITS_SHIFT : natural := 16;
     constant CONFIG_FRAME_POSITION_BITS_MASK : word_t := x"003F0000";
     -- ignore_pin: 1: the trigger pin is not for this channel
@@ -262,7 +265,8 @@ package s6_two_channel_registers is
     -- first_low_extra_cycles: First low phase minus half a period (tST) (cycles)
     constant CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_SHIFT : natural := 0;
     constant CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_MASK : word_t := x"000007FF";
-    -- multi_turn_bits: Upper bits of the position that count turns, if limits.range says rotary; for the host only. T-format: of bits 47..24, up to 24 (bits)
+    -- multi_turn_bits: Upper bits of the position that count turns, if limits.range says rotary; for the host only. T-format: of
+    -- bits 47..24, up to 24 (bits)
     constant CONFIG_TIMING_MULTI_TURN_BITS_SHIFT : natural := 11;
     constant CONFIG_TIMING_MULTI_TURN_BITS_MASK : word_t := x"0000F800";
     -- start_window_cycles: The start edge must come within plus or minus this of its expected phase (cycles)
@@ -368,7 +372,8 @@ package s6_two_channel_registers is
     -- value: 0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0
     constant RESULT_POSITION_HIGH_VALUE_SHIFT : natural := 0;
     constant RESULT_POSITION_HIGH_VALUE_MASK : word_t := x"0000FFFF";
-    -- crc: CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more; T-format: 0
+    -- crc: CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more;
+    -- T-format: 0
     constant RESULT_POSITION_HIGH_CRC_SHIFT : natural := 16;
     constant RESULT_POSITION_HIGH_CRC_MASK : word_t := x"001F0000";
     -- f2: The position came with F2 = 1 (EnDat 2.2); F1 of a good position is 0
@@ -378,7 +383,8 @@ package s6_two_channel_registers is
     constant RESULT_POSITION_HIGH_WIDTH_SHIFT : natural := 24;
     constant RESULT_POSITION_HIGH_WIDTH_MASK : word_t := x"3F000000";
 
-    -- ro: First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request.
+    -- ro: First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format:
+    -- start bit of the request.
     function RESULT_TIMESTAMP_WORD(channel : natural) return natural;
     function RESULT_TIMESTAMP_BYTE(channel : natural) return natural;
     constant RESULT_TIMESTAMP_RESET : word_t := x"00000000";
@@ -419,7 +425,8 @@ package s6_two_channel_registers is
     function RESULT_AGE_RECOVERY_WORD(channel : natural) return natural;
     function RESULT_AGE_RECOVERY_BYTE(channel : natural) return natural;
     constant RESULT_AGE_RECOVERY_RESET : word_t := x"00000000";
-    -- age_us: Age of the position: 0 until its frame has ended, counted from there, also while results are held; stops at 65535 (us)
+    -- age_us: Age of the position: 0 until its frame has ended, counted from there, also while results are held; stops at 65535
+    -- (us)
     constant RESULT_AGE_RECOVERY_AGE_US_SHIFT : natural := 0;
     constant RESULT_AGE_RECOVERY_AGE_US_MASK : word_t := x"0000FFFF";
     -- recovery_cycles: Recovery time tm of the last frame (cycles)

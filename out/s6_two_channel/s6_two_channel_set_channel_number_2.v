@@ -9,9 +9,9 @@
 // trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
 //                     ^   |                 ^
 // result strobe ------+---+-- owes nothing: the set may be closed
-//
-// Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
-// be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
+// Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own,
+// one of them may be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty
+// place in the next one.
 module s6_two_channel_set_channel_number_2 (
     // System clock.
     input  wire         clock,
@@ -63,68 +63,20 @@ module s6_two_channel_set_channel_number_2 (
     wire   [7:0] shown;
     // High if the channel took the last trigger.
     reg          took; initial took = 1'b0;
-    reg          took_next;
     // High from a trigger that the channel took until its result.
     reg          waiting; initial waiting = 1'b0;
-    reg          waiting_next;
     // Position in the set that is being written; 0 if the channel has none for it.
     reg   [47:0] position_taken; initial position_taken = 48'd0;
-    reg   [47:0] position_taken_next;
     // Cause, flags, valid and fresh in the set that is being written.
     reg   [15:0] status_taken; initial status_taken = 16'd0;
-    reg   [15:0] status_taken_next;
     // High if the channel took the trigger of that set.
     reg          took_taken; initial took_taken = 1'b0;
-    reg          took_taken_next;
     // High if the result was missing when that set was closed.
     reg          missing_taken; initial missing_taken = 1'b0;
-    reg          missing_taken_next;
     // Byte of position or status that is asked for; 0 while another block is.
     reg    [7:0] set_byte_held; initial set_byte_held = 8'd0;
-    reg    [7:0] set_byte_held_next;
     wire         _unused_ok = &{1'b0, flags[11:0], flags[19]};
 
-    always @* begin
-        waiting_next = waiting;
-        took_next = took;
-        if (result_strobe) begin
-            waiting_next = 1'b0;
-        end
-        if (trigger) begin
-            took_next = !busy;
-            waiting_next = !busy;
-        end
-    end
-
-    always @* begin
-        set_byte_held_next = set_byte_held;
-        case (byte_at)
-            3'd0: begin
-                set_byte_held_next = position_taken[7:0];
-            end
-            3'd1: begin
-                set_byte_held_next = position_taken[15:8];
-            end
-            3'd2: begin
-                set_byte_held_next = position_taken[23:16];
-            end
-            3'd3: begin
-                set_byte_held_next = position_taken[31:24];
-            end
-            3'd4: begin
-                set_byte_held_next = position_taken[39:32];
-            end
-            3'd5: begin
-                set_byte_held_next = position_taken[47:40];
-            end
-            3'd6: begin
-                set_byte_held_next = status_taken[7:0] | {2'd0, took_taken, 5'd0};
-            end
-            default: begin
-                set_byte_held_next = status_taken[15:8] | {missing_taken, 7'd0};
-            end
-        endcase
-    end
     assign open = waiting & !result_strobe;
     assign owes = open;
     assign replaced = took & !waiting & result_strobe;
@@ -132,19 +84,6 @@ module s6_two_channel_set_channel_number_2 (
     assign is_own = took & !open;
     assign empties = take & !is_own;
     assign status = {1'b0, flags[18:12], fresh, position_valid, 1'b0, cause};
-
-    always @* begin
-        position_taken_next = position_taken;
-        status_taken_next = status_taken;
-        took_taken_next = took_taken;
-        missing_taken_next = missing_taken;
-        if (take) begin
-            position_taken_next = position;
-            status_taken_next = status;
-            took_taken_next = took;
-            missing_taken_next = open;
-        end
-    end
     // Reported with the first status byte; the bytes before it have been sent.
     assign is_other = block != NUMBER;
     assign shown = set_byte_held;
@@ -157,10 +96,17 @@ module s6_two_channel_set_channel_number_2 (
             took_taken <= 1'b0;
             missing_taken <= 1'b0;
         end else begin
-            took <= took_next;
-            waiting <= waiting_next;
-            took_taken <= took_taken_next;
-            missing_taken <= missing_taken_next;
+            if (result_strobe) begin
+                waiting <= 1'b0;
+            end
+            if (trigger) begin
+                took <= !busy;
+                waiting <= !busy;
+            end
+            if (take) begin
+                took_taken <= took;
+                missing_taken <= open;
+            end
         end
     end
 
@@ -169,8 +115,10 @@ module s6_two_channel_set_channel_number_2 (
             position_taken <= 48'd0;
             status_taken <= 16'd0;
         end else begin
-            position_taken <= position_taken_next;
-            status_taken <= status_taken_next;
+            if (take) begin
+                position_taken <= position;
+                status_taken <= status;
+            end
         end
     end
 
@@ -178,7 +126,32 @@ module s6_two_channel_set_channel_number_2 (
         if (is_other) begin
             set_byte_held <= 8'd0;
         end else begin
-            set_byte_held <= set_byte_held_next;
+            case (byte_at)
+                3'd0: begin
+                    set_byte_held <= position_taken[7:0];
+                end
+                3'd1: begin
+                    set_byte_held <= position_taken[15:8];
+                end
+                3'd2: begin
+                    set_byte_held <= position_taken[23:16];
+                end
+                3'd3: begin
+                    set_byte_held <= position_taken[31:24];
+                end
+                3'd4: begin
+                    set_byte_held <= position_taken[39:32];
+                end
+                3'd5: begin
+                    set_byte_held <= position_taken[47:40];
+                end
+                3'd6: begin
+                    set_byte_held <= status_taken[7:0] | {2'd0, took_taken, 5'd0};
+                end
+                default: begin
+                    set_byte_held <= status_taken[15:8] | {missing_taken, 7'd0};
+                end
+            endcase
         end
     end
 endmodule

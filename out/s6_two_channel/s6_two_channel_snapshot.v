@@ -34,7 +34,7 @@ module s6_two_channel_snapshot (
     input  wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     input  wire   [4:0] cause_told,
-    // Raw flags, see flag.
+    // Raw flags, one bit for each fault; bits as in the register map.
     input  wire  [19:0] flags_told,
     // Position of the frame.
     input  wire  [47:0] position_in,
@@ -68,7 +68,8 @@ module s6_two_channel_snapshot (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // T-format.
     output wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
@@ -87,94 +88,45 @@ module s6_two_channel_snapshot (
     reg          strobe; initial strobe = 1'b0;
     // Published position.
     reg   [47:0] held; initial held = 48'd0;
-    reg   [47:0] held_next;
     // CRC that came with the published position.
     reg    [4:0] held_crc; initial held_crc = 5'd0;
-    reg    [4:0] held_crc_next;
     // Width of the published position.
     reg    [5:0] held_width; initial held_width = 6'd0;
-    reg    [5:0] held_width_next;
     // High if the published position came with F2.
     reg          held_f2; initial held_f2 = 1'b0;
-    reg          held_f2_next;
     // Width of the position before.
     reg    [5:0] earlier_width; initial earlier_width = 6'd0;
-    reg    [5:0] earlier_width_next;
     // High if the position before came with F2.
     reg          earlier_f2; initial earlier_f2 = 1'b0;
-    reg          earlier_f2_next;
     // High if there was a valid position before.
     reg          earlier_valid; initial earlier_valid = 1'b0;
-    reg          earlier_valid_next;
     // High from a good result until its frame is confirmed or withdrawn.
     reg          unconfirmed; initial unconfirmed = 1'b0;
-    reg          unconfirmed_next;
     // High while a position is published that can be used.
     reg          valid; initial valid = 1'b0;
-    reg          valid_next;
     // High if the last result brought a good position.
     reg          is_fresh; initial is_fresh = 1'b0;
-    reg          is_fresh_next;
     // Number of results, wrapping.
     reg   [15:0] count; initial count = 16'd0;
-    reg   [15:0] count_next;
     // Time stamp of the frame under way; from a result to the end of its frame that of the position before.
     reg   [31:0] stamp_pending; initial stamp_pending = 32'd0;
-    reg   [31:0] stamp_pending_next;
     // Time stamp of the published position.
     reg   [31:0] stamp; initial stamp = 32'd0;
-    reg   [31:0] stamp_next;
     // Age of the position in microseconds, up to 65535.
     reg   [15:0] age; initial age = 16'd0;
-    reg   [15:0] age_next;
     // High when the age has reached 65535.
     reg          age_full; initial age_full = 1'b0;
     // Primary cause of the last result, or of a fault after it.
     reg    [4:0] cause_held; initial cause_held = 5'd0;
-    reg    [4:0] cause_held_next;
     // Raw flags of the last result, or of a fault after it.
     reg   [19:0] flags_held; initial flags_held = 20'd0;
-    reg   [19:0] flags_held_next;
     // CRC received with the last result.
     reg    [4:0] received; initial received = 5'd0;
-    reg    [4:0] received_next;
     // CRC computed for the last result.
     reg    [4:0] computed; initial computed = 5'd0;
-    reg    [4:0] computed_next;
 
     assign take_good = publish & good;
-
-    always @* begin
-        age_next = age;
-        if (tick_us & !age_full) begin
-            age_next = age + 16'd1;
-        end
-        if (unconfirmed & confirm) begin
-            age_next = 16'd0;
-        end
-    end
     assign take_back = withdraw & unconfirmed;
-
-    always @* begin
-        unconfirmed_next = unconfirmed;
-        if (confirm | take_back) begin
-            unconfirmed_next = 1'b0;
-        end
-        if (take_good) begin
-            unconfirmed_next = 1'b1;
-        end
-    end
-
-    always @* begin
-        stamp_pending_next = stamp_pending;
-        // Between a result and the end of its frame stamp_pending keeps the time stamp of the position before.
-        if (take_good) begin
-            stamp_pending_next = stamp;
-        end
-        if (first_fall) begin
-            stamp_pending_next = timestamp;
-        end
-    end
 
     always @* begin
         age_now = age;
@@ -183,53 +135,6 @@ module s6_two_channel_snapshot (
         end
     end
 
-    always @* begin
-        is_fresh_next = is_fresh;
-        count_next = count;
-        received_next = received;
-        computed_next = computed;
-        held_next = held;
-        held_crc_next = held_crc;
-        held_width_next = held_width;
-        held_f2_next = held_f2;
-        stamp_next = stamp;
-        valid_next = valid;
-        earlier_width_next = earlier_width;
-        earlier_f2_next = earlier_f2;
-        earlier_valid_next = earlier_valid;
-        cause_held_next = cause_held;
-        flags_held_next = flags_held;
-        if (publish) begin
-            is_fresh_next = good;
-            count_next = count + 16'd1;
-            received_next = crc_received_in;
-            computed_next = crc_computed_in;
-        end
-        if (take_good) begin
-            held_next = position_in;
-            held_crc_next = crc_received_in;
-            held_width_next = width_in;
-            held_f2_next = has_f2_in;
-            stamp_next = stamp_pending;
-            valid_next = 1'b1;
-            earlier_width_next = held_width;
-            earlier_f2_next = held_f2;
-            earlier_valid_next = valid;
-        end
-        if (take_back) begin
-            held_next = position_in;
-            held_crc_next = crc_received_in;
-            held_width_next = earlier_width;
-            held_f2_next = earlier_f2;
-            stamp_next = stamp_pending;
-            valid_next = earlier_valid;
-            is_fresh_next = 1'b0;
-        end
-        if (publish | late_fault) begin
-            cause_held_next = cause_told;
-            flags_held_next = flags_told;
-        end
-    end
     assign swap = take_good;
     assign result_strobe = strobe;
     assign position = held;
@@ -270,26 +175,58 @@ module s6_two_channel_snapshot (
             computed <= 5'd0;
         end else begin
             strobe <= publish;
-            held <= held_next;
-            held_crc <= held_crc_next;
-            held_width <= held_width_next;
-            held_f2 <= held_f2_next;
-            earlier_width <= earlier_width_next;
-            earlier_f2 <= earlier_f2_next;
-            earlier_valid <= earlier_valid_next;
-            unconfirmed <= unconfirmed_next;
-            valid <= valid_next;
-            is_fresh <= is_fresh_next;
-            count <= count_next;
-            stamp_pending <= stamp_pending_next;
-            stamp <= stamp_next;
-            age <= age_next;
-            // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look young.
+            if (publish) begin
+                is_fresh <= good;
+                count <= count + 16'd1;
+                received <= crc_received_in;
+                computed <= crc_computed_in;
+            end
+            if (take_good) begin
+                held <= position_in;
+                held_crc <= crc_received_in;
+                held_width <= width_in;
+                held_f2 <= has_f2_in;
+                stamp <= stamp_pending;
+                valid <= 1'b1;
+                earlier_width <= held_width;
+                earlier_f2 <= held_f2;
+                earlier_valid <= valid;
+            end
+            if (take_back) begin
+                held <= position_in;
+                held_crc <= crc_received_in;
+                held_width <= earlier_width;
+                held_f2 <= earlier_f2;
+                stamp <= stamp_pending;
+                valid <= earlier_valid;
+                is_fresh <= 1'b0;
+            end
+            if (publish | late_fault) begin
+                cause_held <= cause_told;
+                flags_held <= flags_told;
+            end
+            if (confirm | take_back) begin
+                unconfirmed <= 1'b0;
+            end
+            if (take_good) begin
+                unconfirmed <= 1'b1;
+            end
+            // Between a result and the end of its frame stamp_pending keeps the time stamp of the position before.
+            if (take_good) begin
+                stamp_pending <= stamp;
+            end
+            if (first_fall) begin
+                stamp_pending <= timestamp;
+            end
+            if (tick_us & !age_full) begin
+                age <= age + 16'd1;
+            end
+            if (unconfirmed & confirm) begin
+                age <= 16'd0;
+            end
+            // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look
+            // young.
             age_full <= &age;
-            cause_held <= cause_held_next;
-            flags_held <= flags_held_next;
-            received <= received_next;
-            computed <= computed_next;
         end
     end
 
@@ -305,8 +242,10 @@ module s6_two_channel_snapshot (
     // one_set: Position, its width, CRC, F2 and time change together, and only with a good result, or back when that was withdrawn.
     // one_number_each: Each result has the next number, and nothing else changes it.
     // bad_is_not_fresh: A result without good position leaves the position, and says that it is an earlier one.
-    // faults_with_results: Cause and flags change only with a result, a fault after it, or when the stored position was found changed.
-    // restored unless NEVER_WITHDRAWS (positions that are never withdrawn): A position that is withdrawn before the next frame gives way to the last good one, with its time, or to none if there was none; where that is not kept, no position is valid.
+    // faults_with_results: Cause and flags change only with a result, a fault after it, or when the stored position was found
+    // changed.
+    // restored unless NEVER_WITHDRAWS (positions that are never withdrawn): A position that is withdrawn before the next frame
+    // gives way to the last good one, with its time, or to none if there was none; where that is not kept, no position is valid.
     reg f_past_valid; initial f_past_valid = 1'b0;
     wire [91:0] f_set = {held, held_crc, held_width, held_f2, stamp};
     always @(posedge clock) begin

@@ -96,61 +96,44 @@ module s6_two_channel_stream (
     wire         buffer_ready;
     // High while sets are collected; written by the host.
     reg          collect; initial collect = 1'b0;
-    reg          collect_next;
     // High while frames are pushed through the front; written by the host.
     reg          push_on; initial push_on = 1'b0;
-    reg          push_on_next;
     // High from a trigger until its set is closed or counted as lost.
     reg          open; initial open = 1'b0;
-    reg          open_next;
     // High in the first cycle after a trigger: the trigger count is not up to date before.
     reg          first; initial first = 1'b0;
     // High if a result of the open set has been replaced by another; cleared by a trigger.
     reg          spoilt; initial spoilt = 1'b0;
-    reg          spoilt_next;
     // Number of the trigger of the open set.
     reg   [15:0] sequence_value; initial sequence_value = 16'd0;
-    reg   [15:0] sequence_next;
     // Time of the trigger of the open set.
     reg   [31:0] trigger_time; initial trigger_time = 32'd0;
-    reg   [31:0] trigger_time_next;
     // Number in the head of the set that is being written.
     reg   [15:0] sequence_taken; initial sequence_taken = 16'd0;
-    reg   [15:0] sequence_taken_next;
     // Time in the head of the set that is being written.
     reg   [31:0] time_taken; initial time_taken = 32'd0;
-    reg   [31:0] time_taken_next;
     // Count of lost sets in the head of the set that is being written.
     reg    [7:0] lost_taken; initial lost_taken = 8'd0;
-    reg    [7:0] lost_taken_next;
     // Sets lost since the last one that was written, up to 255.
     reg    [7:0] lost_before; initial lost_before = 8'd0;
-    reg    [7:0] lost_before_next;
     wire         lost_before_reset;
     // Sets lost since the host cleared the count, up to 65535.
     reg   [15:0] lost_all; initial lost_all = 16'd0;
-    reg   [15:0] lost_all_next;
     wire         lost_all_reset;
     // Byte of the head that is asked for; 0 while another block is.
     reg    [7:0] head_byte; initial head_byte = 8'd0;
-    reg    [7:0] head_byte_next;
     wire         head_byte_reset;
     // Low three bytes of the state word, as of the read of its first byte.
     reg   [23:0] state_held; initial state_held = 24'd0;
-    reg   [23:0] state_held_next;
     // Byte that the host reads; 0 if the word is not one of the stream's.
     reg    [7:0] byte_read; initial byte_read = 8'd0;
-    reg    [7:0] byte_read_next;
     wire         byte_read_reset;
     // High from a clear by the host until the buffer is empty: its bytes are discarded.
     reg          flush; initial flush = 1'b0;
-    reg          flush_next;
     // High if the last byte that was taken was not the end of a frame.
     reg          mid_frame; initial mid_frame = 1'b0;
-    reg          mid_frame_next;
     // High from the first pushed byte of a frame to its last one.
     reg          pushing; initial pushing = 1'b0;
-    reg          pushing_next;
     wire         _unused_ok = &{1'b0, trigger_count[31:16]};
 
     s6_two_channel_frame_buffer u_buffer (
@@ -168,169 +151,20 @@ module s6_two_channel_stream (
         .take(take)
     );
 
-    always @* begin
-        trigger_time_next = trigger_time;
-        if (trigger) begin
-            trigger_time_next = timestamp;
-        end
-    end
-
-    always @* begin
-        sequence_next = sequence_value;
-        if (first) begin
-            sequence_next = trigger_count[15:0];
-        end
-    end
-
-    always @* begin
-        spoilt_next = spoilt;
-        if (replaced) begin
-            spoilt_next = 1'b1;
-        end
-    end
-
-    always @* begin
-        head_byte_next = head_byte;
-        case (byte_at)
-            3'd0: begin
-                head_byte_next = HEAD;
-            end
-            3'd1: begin
-                head_byte_next = lost_taken;
-            end
-            3'd2: begin
-                head_byte_next = sequence_taken[7:0];
-            end
-            3'd3: begin
-                head_byte_next = sequence_taken[15:8];
-            end
-            3'd4: begin
-                head_byte_next = time_taken[7:0];
-            end
-            3'd5: begin
-                head_byte_next = time_taken[15:8];
-            end
-            3'd6: begin
-                head_byte_next = time_taken[23:16];
-            end
-            default: begin
-                head_byte_next = time_taken[31:24];
-            end
-        endcase
-    end
     assign wanted = open & !first & (!owes | trigger);
     assign good = buffer_room & !spoilt & !replaced;
     assign take_now = wanted & buffer_idle & good;
-
-    always @* begin
-        sequence_taken_next = sequence_taken;
-        time_taken_next = time_taken;
-        lost_taken_next = lost_taken;
-        if (take_now) begin
-            sequence_taken_next = sequence_value;
-            time_taken_next = trigger_time;
-            lost_taken_next = lost_before;
-        end
-    end
     assign lost_now = (wanted & buffer_idle & !good) | (open & trigger & (first | !buffer_idle));
-
-    always @* begin
-        open_next = open;
-        if (take_now | lost_now) begin
-            open_next = 1'b0;
-        end
-        if (trigger & collect) begin
-            open_next = 1'b1;
-        end
-    end
-
-    always @* begin
-        lost_before_next = lost_before;
-        if (lost_now & !(&lost_before)) begin
-            lost_before_next = lost_before + 8'd1;
-        end
-    end
-
-    always @* begin
-        lost_all_next = lost_all;
-        if (lost_now & !(&lost_all)) begin
-            lost_all_next = lost_all + 16'd1;
-        end
-    end
     assign take_set = take_now;
     assign head_byte_reset = |block;
     assign buffer_set_byte = head_byte | channel_byte;
     // The host's words.
     assign reads = access & selected & !write;
-
-    always @* begin
-        state_held_next = state_held;
-        // The read of the first byte latches the other three.
-        if (reads & !(|lane)) begin
-            state_held_next = {lost_all[7:0], buffer_waiting_bytes};
-        end
-    end
     assign writes = access & selected & write;
-
-    always @* begin
-        collect_next = collect;
-        push_on_next = push_on;
-        if (writes & !(|word)) begin
-            collect_next = write_data[0];
-            push_on_next = write_data[1];
-        end
-    end
     assign clear = writes & (word == 2'd3) & write_data[0];
-
-    always @* begin
-        flush_next = flush;
-        if (!pushing & !(|buffer_waiting_bytes)) begin
-            flush_next = 1'b0;
-        end
-        if (clear) begin
-            flush_next = 1'b1;
-        end
-    end
     assign lost_before_reset = reset | clear | take_now;
     assign lost_all_reset = reset | clear;
     assign bus_may = buffer_ready & !push_on & !pushing & !flush;
-
-    always @* begin
-        byte_read_next = byte_read;
-        if (reads) begin
-            byte_read_next = 8'd0;
-            case (word)
-                2'd0: begin
-                    if (&lane) begin
-                        byte_read_next = {6'd0, push_on, collect};
-                    end
-                end
-                2'd1: begin
-                    case (lane)
-                        2'd0: begin
-                            byte_read_next = lost_all[15:8];
-                        end
-                        2'd1: begin
-                            byte_read_next = state_held[23:16];
-                        end
-                        2'd2: begin
-                            byte_read_next = state_held[15:8];
-                        end
-                        default: begin
-                            byte_read_next = state_held[7:0];
-                        end
-                    endcase
-                end
-                2'd2: begin
-                    if (bus_may) begin
-                        byte_read_next = push_byte;
-                    end
-                end
-                default: begin
-                end
-            endcase
-        end
-    end
     assign bus_take = reads & (word == 2'd2) & bus_may;
     assign byte_read_reset = access & !reads;
     assign read_byte = byte_read;
@@ -342,24 +176,6 @@ module s6_two_channel_stream (
     assign skip = buffer_ready & !pushing & (flush | (push_on & mid_frame));
     assign take = bus_take | push_take | skip;
     assign more = |push_byte;
-
-    always @* begin
-        mid_frame_next = mid_frame;
-        if (take) begin
-            mid_frame_next = more;
-        end
-    end
-
-    always @* begin
-        pushing_next = pushing;
-        if (push_take) begin
-            pushing_next = more;
-        end
-        // An upset: nothing is left of a frame, and answers would wait for its end for ever.
-        if (pushing & !(|buffer_waiting_bytes)) begin
-            pushing_next = 1'b0;
-        end
-    end
 
     always @(posedge clock) begin
         if (reset) begin
@@ -377,20 +193,49 @@ module s6_two_channel_stream (
             mid_frame <= 1'b0;
             pushing <= 1'b0;
         end else begin
-            collect <= collect_next;
-            push_on <= push_on_next;
-            open <= open_next;
+            if (writes & !(|word)) begin
+                collect <= write_data[0];
+                push_on <= write_data[1];
+            end
+            if (take_now | lost_now) begin
+                open <= 1'b0;
+            end
+            if (trigger & collect) begin
+                open <= 1'b1;
+            end
             // The set under way. The number of its trigger is there a cycle after the trigger.
             first <= trigger;
-            sequence_value <= sequence_next;
-            trigger_time <= trigger_time_next;
-            sequence_taken <= sequence_taken_next;
-            time_taken <= time_taken_next;
-            lost_taken <= lost_taken_next;
-            state_held <= state_held_next;
-            flush <= flush_next;
-            mid_frame <= mid_frame_next;
-            pushing <= pushing_next;
+            if (first) begin
+                sequence_value <= trigger_count[15:0];
+            end
+            if (trigger) begin
+                trigger_time <= timestamp;
+            end
+            if (take_now) begin
+                sequence_taken <= sequence_value;
+                time_taken <= trigger_time;
+                lost_taken <= lost_before;
+            end
+            // The read of the first byte latches the other three.
+            if (reads & !(|lane)) begin
+                state_held <= {lost_all[7:0], buffer_waiting_bytes};
+            end
+            if (!pushing & !(|buffer_waiting_bytes)) begin
+                flush <= 1'b0;
+            end
+            if (clear) begin
+                flush <= 1'b1;
+            end
+            if (take) begin
+                mid_frame <= more;
+            end
+            if (push_take) begin
+                pushing <= more;
+            end
+            // An upset: nothing is left of a frame, and answers would wait for its end for ever.
+            if (pushing & !(|buffer_waiting_bytes)) begin
+                pushing <= 1'b0;
+            end
         end
     end
 
@@ -398,7 +243,9 @@ module s6_two_channel_stream (
         if (trigger) begin
             spoilt <= 1'b0;
         end else begin
-            spoilt <= spoilt_next;
+            if (replaced) begin
+                spoilt <= 1'b1;
+            end
         end
     end
 
@@ -406,7 +253,9 @@ module s6_two_channel_stream (
         if (lost_before_reset) begin
             lost_before <= 8'd0;
         end else begin
-            lost_before <= lost_before_next;
+            if (lost_now & !(&lost_before)) begin
+                lost_before <= lost_before + 8'd1;
+            end
         end
     end
 
@@ -414,7 +263,9 @@ module s6_two_channel_stream (
         if (lost_all_reset) begin
             lost_all <= 16'd0;
         end else begin
-            lost_all <= lost_all_next;
+            if (lost_now & !(&lost_all)) begin
+                lost_all <= lost_all + 16'd1;
+            end
         end
     end
 
@@ -422,7 +273,32 @@ module s6_two_channel_stream (
         if (head_byte_reset) begin
             head_byte <= 8'd0;
         end else begin
-            head_byte <= head_byte_next;
+            case (byte_at)
+                3'd0: begin
+                    head_byte <= HEAD;
+                end
+                3'd1: begin
+                    head_byte <= lost_taken;
+                end
+                3'd2: begin
+                    head_byte <= sequence_taken[7:0];
+                end
+                3'd3: begin
+                    head_byte <= sequence_taken[15:8];
+                end
+                3'd4: begin
+                    head_byte <= time_taken[7:0];
+                end
+                3'd5: begin
+                    head_byte <= time_taken[15:8];
+                end
+                3'd6: begin
+                    head_byte <= time_taken[23:16];
+                end
+                default: begin
+                    head_byte <= time_taken[31:24];
+                end
+            endcase
         end
     end
 
@@ -430,7 +306,39 @@ module s6_two_channel_stream (
         if (byte_read_reset) begin
             byte_read <= 8'd0;
         end else begin
-            byte_read <= byte_read_next;
+            if (reads) begin
+                byte_read <= 8'd0;
+                case (word)
+                    2'd0: begin
+                        if (&lane) begin
+                            byte_read <= {6'd0, push_on, collect};
+                        end
+                    end
+                    2'd1: begin
+                        case (lane)
+                            2'd0: begin
+                                byte_read <= lost_all[15:8];
+                            end
+                            2'd1: begin
+                                byte_read <= state_held[23:16];
+                            end
+                            2'd2: begin
+                                byte_read <= state_held[15:8];
+                            end
+                            default: begin
+                                byte_read <= state_held[7:0];
+                            end
+                        endcase
+                    end
+                    2'd2: begin
+                        if (bus_may) begin
+                            byte_read <= push_byte;
+                        end
+                    end
+                    default: begin
+                    end
+                endcase
+            end
         end
     end
 

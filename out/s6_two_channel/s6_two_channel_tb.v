@@ -3,10 +3,11 @@
 //
 // Self-checking test bench of s6_two_channel, plain Verilog-2005, for every simulator:
 //   iverilog -g2005 -s s6_two_channel_tb -o tb.vvp s6_two_channel_tb.v -f s6_two_channel.f && vvp -n tb.vvp
-//   or: verilator --binary --timing -MAKEFLAGS OPT_FAST=-O0 --top-module s6_two_channel_tb s6_two_channel_tb.v -f s6_two_channel.f && obj_dir/Vs6_two_channel_tb
+//   or: verilator --binary --timing -MAKEFLAGS OPT_FAST=-O0 --top-module s6_two_channel_tb s6_two_channel_tb.v -f s6_two_channel.f
+//   && obj_dir/Vs6_two_channel_tb
 //   (without OPT_FAST=-O0 it runs some times faster, and takes minutes to compile)
-// It says what it checks, what it leaves out and what it sets inside the card, and ends by itself: with the line PASS, or with FAIL, the number
-// of complaints and an exit code that is not 0. Plusargs (vvp -n tb.vvp +vcd ...):
+// It says what it checks, what it leaves out and what it sets inside the card, and ends by itself: with the line PASS, or with
+// FAIL, the number of complaints and an exit code that is not 0. Plusargs (vvp -n tb.vvp +vcd ...):
 // +quick leaves out what takes long, +all leaves out nothing (triggers at every moment of a frame, both levels of each bit at every width, and what +abort and +slow add),
 // +vcd writes s6_two_channel_tb.vcd, +first ends with the first complaint, +abort also waits out the 30 ms after an aborted frame, +slow also tries
 // clock rates below 1 MHz, +no_deposit leaves out the start window and the timer, for which registers inside the card are set.
@@ -17,9 +18,9 @@
 /* verilator lint_off WIDTH */
 
 // An encoder: counts clock edges, reads the mode command, answers with its position, waits its recovery time. Asked for a parameter
-// (100011, address, 16 more bits) it answers with the address and with it twice, once inverted. Where the clock may go on, the falling edge
-// behind the answer takes the next position, and DATA is LOW for one period at least before its start bit. Behind the position of 001001
-// it takes an MRS code, which selects the additional data that come with each answer from then on, 2 before 1.
+// (100011, address, 16 more bits) it answers with the address and with it twice, once inverted. Where the clock may go on, the
+// falling edge behind the answer takes the next position, and DATA is LOW for one period at least before its start bit. Behind the
+// position of 001001 it takes an MRS code, which selects the additional data that come with each answer from then on, 2 before 1.
 module s6_two_channel_tb_encoder #(
     parameter integer CHANNEL = 0, // for its messages
     parameter [5:0] COMMAND = 6'b111000, // the mode command it knows: 111000 or 000111
@@ -656,7 +657,8 @@ module s6_two_channel_tb;
                 #(10_000.0);
                 read_words(CARD_CONFIG_HOLD, 1);
                 check("word after a command that stopped", word(0), 32'hA1B2C300);
-                // The last byte has no stop bit: the card writes nothing, and ignores all bytes until the line has rested for 100 ms.
+                // The last byte has no stop bit: the card writes nothing, and ignores all bytes until the line has rested for 100
+                // ms.
                 send_command(8'h01, 1, CARD_CONFIG_TRIGGER_PERIOD);
                 send_byte(8'h00);
                 send_byte(8'h12);
@@ -1164,8 +1166,8 @@ module s6_two_channel_tb;
             start_ps[32*port +: 32] = $rtoi((goes_late(port, is_even_late) ? 1000.0 : -1000.0) * CLK_NS * (window_cycles(port) + beyond));
     endtask
 
-    // The delay follows the start bit, a cycle in each frame, at the most three cycles here; it stops a cycle before its place, or on it. So the
-    // next start bit may be a cycle farther from it.
+    // The delay follows the start bit, a cycle in each frame, at the most three cycles here; it stops a cycle before its place, or
+    // on it. So the next start bit may be a cycle farther from it.
     function integer moved_cycles(input integer channel, input is_late);
         begin
             moved_cycles = window_cycles(channel) < 4 ? window_cycles(channel) - 1 : 3;
@@ -1212,8 +1214,8 @@ module s6_two_channel_tb;
 
     integer times, want_delay;
 
-    // Inside their windows positions are good, and the next start bits, back in their places, are, too. The delay is measured first: the one that
-    // has followed start bits may be a cycle off.
+    // Inside their windows positions are good, and the next start bits, back in their places, are, too. The delay is measured
+    // first: the one that has followed start bits may be a cycle off.
     task moved_within(input is_even_late);
         begin
             write_word(CARD_CALIBRATE, ~(32'hFFFFFFFF << CHANNELS));
@@ -1750,7 +1752,8 @@ module s6_two_channel_tb;
 
         if (level > 0) begin
         tell("widths of the position");
-        // Widths around the steps of the parallel CRC, all of them with +all; both levels of each bit at some, with +all at each of them.
+        // Widths around the steps of the parallel CRC, all of them with +all; both levels of each bit at some, with +all at each of
+        // them.
         read_frame_words;
         for (bits = 48; bits > 0; bits = bits - 1)
             if (level > 1 || bits == 48 || bits == 13) begin

@@ -26,20 +26,12 @@ module s6_two_channel_timebase (
     wire         hit;
     // System clock cycles of the current microsecond, from 0.
     reg    [7:0] count; initial count = 8'd0;
-    reg    [7:0] count_next;
     // High for one cycle each microsecond.
     reg          tick; initial tick = 1'b0;
     // System clock cycles since reset, wrapping.
     reg   [31:0] cycles; initial cycles = 32'd0;
 
     assign hit = count == LAST_COUNT;
-
-    always @* begin
-        count_next = count + 8'd1;
-        if (hit) begin
-            count_next = 8'd0;
-        end
-    end
     assign tick_us = tick;
     assign timestamp = cycles;
 
@@ -49,7 +41,10 @@ module s6_two_channel_timebase (
             tick <= 1'b0;
             cycles <= 32'd0;
         end else begin
-            count <= count_next;
+            count <= count + 8'd1;
+            if (hit) begin
+                count <= 8'd0;
+            end
             tick <= hit;
             cycles <= cycles + 32'd1;
         end

@@ -12,10 +12,9 @@
 // done      _______________________________________________/\_________________________
 //
 // With a supplement the clock stays LOW after the last CRC bit (Park), and Frame goes on until its cells are over.
-//
-// A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame at the full
-// clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by own, for a request that needs the line for
-// itself. What becomes of the first is published; what becomes of either is told with over.
+// A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The
+// frame at the full clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by own, for a
+// request that needs the line for itself. What becomes of the first is published; what becomes of either is told with over.
 //
 // Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
 // off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
@@ -49,6 +48,8 @@ module s6_two_channel_transaction (
     input  wire         started,
     // All clock pulses have been sent, or are on their way to the pin.
     input  wire         all_sent,
+    // Strobe: the last one is counted in this cycle.
+    input  wire         last_sent,
     // The cell of each pulse that was sent has ended.
     input  wire         none_under_way,
     // The counts of cells and pulses agree that this cell is the last one.
@@ -85,7 +86,8 @@ module s6_two_channel_transaction (
     output wire         run,
     // The clock waits: when the cells of all pulses that were sent have ended, a new burst begins.
     output wire         drain,
-    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another clock.
+    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another
+    // clock.
     output wire         last_cell,
     // This frame runs at the calibration clock.
     output wire         slow,
@@ -107,7 +109,7 @@ module s6_two_channel_transaction (
     output wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     output wire   [4:0] cause_told,
-    // Raw flags, see flag.
+    // Raw flags, one bit for each fault; bits as in the register map.
     output wire  [19:0] flags_told,
     // No frame is under way, and all that there is to tell of the last one has been told.
     output wire         is_at_rest,
@@ -159,7 +161,6 @@ module s6_two_channel_transaction (
     wire         lost;
     wire         owed;
     reg          proof;
-    reg          plugged;
     wire         afresh;
     wire         last_edge_all_sent;
     wire         last_edge_holds;
@@ -170,14 +171,13 @@ module s6_two_channel_transaction (
     wire         verdict_is_received;
     wire         verdict_is_doubtful;
     wire         verdict_is_telling;
+    wire         verdict_publishes;
     wire         verdict_once_more;
     reg    [2:0] phase; initial phase = PHASE_NOT_READY;
     reg    [2:0] phase_next;
     reg   [15:0] timer; initial timer = 16'd0;
-    reg   [15:0] timer_next;
     reg   [15:0] timer_limit; initial timer_limit = 16'd0;
     reg          timer_hit; initial timer_hit = 1'b0;
-    reg          timer_hit_next;
     reg          timer_step; initial timer_step = 1'b0;
     reg          hold; initial hold = 1'b0;
     reg          start_now; initial start_now = 1'b0;
@@ -201,11 +201,13 @@ module s6_two_channel_transaction (
     reg          was_hunting; initial was_hunting = 1'b0;
     reg          was_center; initial was_center = 1'b0;
     reg          cleared; initial cleared = 1'b1;
-    reg          cleared_next;
+    // DATA was HIGH between two frames in the cycle before.
+    reg          plugged; initial plugged = 1'b0;
+    reg          plugged_next;
+    // The recovery time has begun in the cycle before.
+    reg          is_back; initial is_back = 1'b0;
     reg          high_at_tick; initial high_at_tick = 1'b0;
-    reg          high_at_tick_next;
     reg          owing; initial owing = 1'b0;
-    reg          owing_next;
     reg          measuring; initial measuring = 1'b0;
     reg          measuring_next;
     reg          once_more; initial once_more = 1'b0;
@@ -216,8 +218,9 @@ module s6_two_channel_transaction (
     s6_two_channel_last_edge u_last_edge (
         .clock(clock),
         .reset(reset),
-        .start(accept),
+        .start(start_now),
         .no_pulse_left(all_sent),
+        .last_sent(last_sent),
         .none_under_way(none_under_way),
         .started(started),
         .running(running),
@@ -259,6 +262,7 @@ module s6_two_channel_transaction (
         .confirm(confirm),
         .cause_told(cause_told),
         .flags_told(flags_told),
+        .publishes(verdict_publishes),
         .once_more(verdict_once_more),
         .displaced(displaced)
     );
@@ -267,12 +271,15 @@ module s6_two_channel_transaction (
     // The position that a measuring frame has made possible.
     assign owed = once_more & owing;
     assign wanted = triggered | owed;
+    // The timer of a wait that was longer than a frame goes on for a cycle after it.
     assign endless = |(timer & FRAME_US);
     // Where the recovery time begins.
     assign in_tail = phase == PHASE_TAIL;
     assign in_recovery = phase == PHASE_RECOVERY;
     assign last_cell = in_tail & was_center;
     assign known = is_calibrated;
+    // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
+    assign afresh = calibrate | plugged;
 
     always @* begin
         phase_next = phase;
@@ -282,11 +289,11 @@ module s6_two_channel_transaction (
         recovery_next = recovery;
         answered_next = answered;
         under_way_next = under_way;
-        timer_next = timer;
+        is_calibrated_next = is_calibrated;
         once_more_next = once_more;
         measuring_next = measuring;
         proof = 1'b0;
-        plugged = 1'b0;
+        plugged_next = 1'b0;
         refuse = 1'b0;
         normal_end = 1'b0;
         supplement_now_next = 1'b0;
@@ -303,7 +310,7 @@ module s6_two_channel_transaction (
         case (phase)
             PHASE_NOT_READY: begin
                 // DATA is not LOW yet, or not for long enough.
-                limit = READY_LOW_CYCLES;
+                limit = READY_LOW_CYCLES - 16'd1;
                 timer_clear = level;
                 idle = level;
                 if (timer_hit) begin
@@ -312,7 +319,7 @@ module s6_two_channel_transaction (
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     // Longer than an edge rings.
-                    plugged = high_at_tick & tick_us;
+                    plugged_next = high_at_tick & tick_us;
                     if (triggered | owed) begin
                         found = DATA_NOT_LOW;
                         give_up = 1'b1;
@@ -326,7 +333,7 @@ module s6_two_channel_transaction (
                 idle = !verdict_is_telling;
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
-                    plugged = 1'b1;
+                    plugged_next = 1'b1;
                     if ((triggered | owed) & !verdict_is_telling) begin
                         found = DATA_NOT_LOW;
                         give_up = 1'b1;
@@ -384,7 +391,7 @@ module s6_two_channel_transaction (
                 running = 1'b1;
                 // No bit follows the answer here.
                 proof = verdict_taken;
-                limit = PARK_CYCLES;
+                limit = PARK_CYCLES - 16'd1;
                 if (timer_hit) begin
                     phase_next = PHASE_FRAME;
                     timer_clear = 1'b1;
@@ -455,10 +462,6 @@ module s6_two_channel_transaction (
                 give_up = 1'b1;
             end
         endcase
-        // What is given up has that as its one result.
-        if (give_up | aborts) begin
-            proof = 1'b0;
-        end
         if (proof & verdict_is_pending) begin
             answered_next = 1'b1;
         end
@@ -477,24 +480,18 @@ module s6_two_channel_transaction (
             // DATA LOW behind a frame of another length does not end it once more.
             normal_end = 1'b0;
             answered_next = 1'b0;
+            is_calibrated_next = 1'b0;
             under_way_next = 1'b0;
         end
-        if (timer_step) begin
-            timer_next = timer + 16'd1;
+        // Whether the propagation delay is known.
+        // The mean over several frames, if it is taken; the last of them makes the delay known.
+        if (verdict_is_received & measuring) begin
+            is_calibrated_next = 1'b1;
         end
-        // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
-        timer_hit_next = (timer >= timer_limit) & !cleared;
-        cleared_next = timer_clear | accept | rise_back;
-        // With the cycles that pass before the timer sees the beginning of its span; a frame that is given up has another one.
-        if (rise_back) begin
-            timer_next = 16'd2;
-        end
-        if (timer_clear) begin
-            timer_next = 16'd0;
-            timer_hit_next = 1'b0;
-        end
-        if (accept) begin
-            timer_next = 16'd2;
+        // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is
+        // told to.
+        if (verdict_is_doubtful) begin
+            is_calibrated_next = 1'b0;
         end
         // What else becomes of that frame is the trigger's result, not something that comes behind it.
         if (verdict_once_more) begin
@@ -506,12 +503,18 @@ module s6_two_channel_transaction (
         end
         // What a frame begins with.
         if (accept) begin
-            measuring_next = !known;
+            slow_now_next = !known;
+        end
+        // A cycle later: the first clock edge has not come by then.
+        if (start_now) begin
+            measuring_next = slow_now;
             under_way_next = 1'b1;
             answered_next = 1'b0;
-            acquiring_next = !known;
-            slow_now_next = !known;
+            acquiring_next = slow_now;
             tail_sampled_next = 1'b0;
+        end
+        if (afresh) begin
+            is_calibrated_next = 1'b0;
         end
         // A reset may have come in the middle of a frame. After power-up nobody has begun one.
         if (reset) begin
@@ -519,49 +522,10 @@ module s6_two_channel_transaction (
         end
     end
 
-    always @* begin
-        owing_next = owing;
-        if (publish | refuse) begin
-            owing_next = 1'b0;
-        end
-        if (accept) begin
-            owing_next = 1'b1;
-        end
-    end
     // Of a frame that measured nothing has been published.
     assign verdict_is_late = answered & !verdict_once_more;
     // Triggers that are lost, and the result that is owed.
     assign lost = trigger & ((!accept & !idle) | owing);
-
-    always @* begin
-        // Whether the delay has to be measured again.
-        high_at_tick_next = high_at_tick & level;
-        if (tick_us) begin
-            high_at_tick_next = level;
-        end
-    end
-    // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
-    assign afresh = calibrate | plugged;
-
-    always @* begin
-        is_calibrated_next = is_calibrated;
-        // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
-        if (aborts) begin
-            is_calibrated_next = 1'b0;
-        end
-        // Whether the propagation delay is known.
-        // The mean over several frames, if it is taken; the last of them makes the delay known.
-        if (verdict_is_received & measuring) begin
-            is_calibrated_next = 1'b1;
-        end
-        // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
-        if (verdict_is_doubtful) begin
-            is_calibrated_next = 1'b0;
-        end
-        if (afresh) begin
-            is_calibrated_next = 1'b0;
-        end
-    end
     assign run = run_now;
     assign start = start_now;
     // Taking the start bit ends its cell; started comes when the comparison knows that.
@@ -603,15 +567,34 @@ module s6_two_channel_transaction (
             was_hunting <= 1'b0;
             was_center <= 1'b0;
             cleared <= 1'b1;
+            plugged <= 1'b0;
+            is_back <= 1'b0;
             high_at_tick <= 1'b0;
             owing <= 1'b0;
             measuring <= 1'b0;
             once_more <= 1'b0;
             under_way <= 1'b0;
         end else begin
-            timer <= timer_next;
+            if (timer_step) begin
+                timer <= timer + 16'd1;
+            end
+            if (cleared) begin
+                timer <= 16'd0;
+            end
+            if (is_back) begin
+                timer <= {15'd1, timer_step};
+            end
+            if (start_now) begin
+                timer <= 16'd3;
+            end
             timer_limit <= limit;
-            timer_hit <= timer_hit_next;
+            // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its
+            // timer.
+            timer_hit <= (timer >= timer_limit) & !cleared;
+            cleared <= timer_clear | rise_back;
+            if (timer_clear) begin
+                timer_hit <= 1'b0;
+            end
             timer_step <= !in_us | tick_us;
             hold <= (phase == PHASE_FIRST_LOW) | last_edge_holds;
             start_now <= accept;
@@ -629,9 +612,21 @@ module s6_two_channel_transaction (
             // Time-outs, each counted from the beginning of its span.
             was_hunting <= hunting;
             was_center <= center;
-            cleared <= cleared_next;
-            high_at_tick <= high_at_tick_next;
-            owing <= owing_next;
+            plugged <= plugged_next;
+            // The timer follows a cycle later: whatever begins a span is registered first. It starts with the cycles that have
+            // passed by then, but for a wait for DATA, whose limit is as much shorter.
+            is_back <= rise_back & !aborts;
+            // Whether the delay has to be measured again.
+            high_at_tick <= high_at_tick & level;
+            if (tick_us) begin
+                high_at_tick <= level;
+            end
+            if (verdict_publishes | refuse) begin
+                owing <= 1'b0;
+            end
+            if (accept) begin
+                owing <= 1'b1;
+            end
             measuring <= measuring_next;
             once_more <= once_more_next;
             under_way <= under_way_next;
@@ -658,7 +653,8 @@ module s6_two_channel_transaction (
     // starts_at_rest: A frame starts only when the line was ready: idle, and DATA LOW.
     // low_for_tr: The line is ready only after DATA was LOW for tR.
     // abort_pause: After an aborted frame CLOCK stays quiet for 30 ms, less three microseconds, before DATA is looked at again.
-    // one_result_per_trigger unless HAS_ALL (requests), HAS_CONTINUOUS (a clock that goes on): Every trigger has exactly one result, or is told as lost; nothing else has a result.
+    // one_result_per_trigger unless HAS_ALL (requests), HAS_CONTINUOUS (a clock that goes on): Every trigger has exactly one
+    // result, or is told as lost; nothing else has a result.
     reg f_past_valid; initial f_past_valid = 1'b0;
     reg [15:0] f_low_cycles; initial f_low_cycles = 16'd0;
     reg [15:0] f_quiet_us; initial f_quiet_us = 16'd0;
@@ -675,7 +671,7 @@ module s6_two_channel_transaction (
     wire f_in_frame = (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_TAIL) | (phase == PHASE_RECOVERY) | (phase == PHASE_PARK);
     always @(posedge clock) begin
         f_lost <= lost & !reset;
-        f_tells <= !reset & (refuse | announce | (give_up & !aborts & !answered & !found_late));
+        f_tells <= !reset & (refuse | announce | (give_up & !aborts & !((answered & !verdict_once_more) | found_late)));
         f_owed <= !reset & (f_taken | (f_owed & !publish));
     end
 `ifndef FORMAL_ANY_STATE
@@ -687,12 +683,13 @@ module s6_two_channel_transaction (
         `FORMAL_LABEL(one_result_per_trigger_at_rest) assert ((phase != PHASE_READY) | !f_owed | owed | f_tells | publish | give_up);
         `FORMAL_LABEL(one_result_per_trigger_lemma_rest) assert (f_in_frame | !(under_way | answered));
         `FORMAL_LABEL(one_result_per_trigger_lemma_frame) assert (!f_in_frame | owing | answered);
-        `FORMAL_LABEL(one_result_per_trigger_lemma_once) assert (!answered | !verdict_is_pending | aborts);
+        `FORMAL_LABEL(one_result_per_trigger_lemma_once) assert (!answered | !verdict_is_pending | verdict_publishes | verdict_once_more | aborts);
         `FORMAL_LABEL(one_result_per_trigger_lemma_where) assert (!answered | aborts | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
         `FORMAL_LABEL(one_result_per_trigger_lemma_tail) assert ((phase != PHASE_TAIL) | verdict_is_pending | aborts);
         `FORMAL_LABEL(one_result_per_trigger_lemma_sampled) assert (!tail_sampled | !f_in_frame | (phase == PHASE_RECOVERY));
         `FORMAL_LABEL(one_result_per_trigger_lemma_proved) assert ((phase != PHASE_RECOVERY) | aborts | !owing | (tail_sampled ? answered | once_more | verdict_once_more : verdict_is_pending));
-        `FORMAL_LABEL(one_result_per_trigger_lemma_told) assert (!answered | !owing | publish | verdict_once_more | f_tells | aborts);
+        `FORMAL_LABEL(one_result_per_trigger_lemma_told) assert (!answered | !owing | verdict_publishes | verdict_once_more | f_tells | aborts);
+        `FORMAL_LABEL(one_result_per_trigger_lemma_result) assert (!(verdict_publishes | verdict_once_more) | answered | f_tells | aborts);
         `FORMAL_LABEL(one_result_per_trigger_lemma_owing) assert (f_in_frame | !owing | once_more | aborts | publish);
         `FORMAL_LABEL(one_result_per_trigger_lemma_open) assert (f_owed == (owing | f_tells | publish));
     end
@@ -701,19 +698,24 @@ module s6_two_channel_transaction (
     end
     always @* begin
         `FORMAL_LABEL(low_for_tr) assert ((phase != PHASE_READY) | (f_low_cycles >= READY_LOW_CYCLES));
-        `FORMAL_LABEL(low_for_tr_lemma_timer) assert ((phase != PHASE_NOT_READY) | (timer <= f_low_cycles));
-        `FORMAL_LABEL(low_for_tr_lemma_limit) assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES));
+        `FORMAL_LABEL(low_for_tr_lemma_timer) assert ((phase != PHASE_NOT_READY) | cleared | (timer < f_low_cycles) | (&f_low_cycles));
+        `FORMAL_LABEL(low_for_tr_lemma_start) assert (!start_now | (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_ABORT));
+        `FORMAL_LABEL(low_for_tr_lemma_back) assert (!is_back | (phase == PHASE_RECOVERY) | (phase == PHASE_ABORT));
+        `FORMAL_LABEL(low_for_tr_lemma_limit) assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES - 16'd1));
         `FORMAL_LABEL(low_for_tr_lemma_hit) assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
         `FORMAL_LABEL(abort_pause) assert (!f_quiet | aborts | (phase_next != PHASE_NOT_READY) | (f_quiet_us >= ABORT_US - 16'd3));
-        `FORMAL_LABEL(abort_pause_lemma_timer) assert (!f_quiet | ({1'b0, timer} + {16'd0, timer_step} <= {1'b0, f_quiet_us} + 17'd3));
+        `FORMAL_LABEL(abort_pause_lemma_timer) assert (!f_quiet | cleared | ({1'b0, timer} + {16'd0, timer_step} <= {1'b0, f_quiet_us} + 17'd3));
         `FORMAL_LABEL(abort_pause_lemma_limit) assert (!f_quiet | cleared | (timer_limit == ABORT_US));
         `FORMAL_LABEL(abort_pause_lemma_hit) assert (!f_quiet | !timer_hit | (f_quiet_us >= ABORT_US - 16'd3));
     end
 `endif
 `ifdef FORMAL_ANY_STATE
-    // forward_only unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A frame goes on from phase to phase and never back, whatever the registers held, but to its abort.
-    // phases_are_timed unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): Each phase has a timer that runs to the limit of this phase.
-    // phases_end unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A phase whose timer has run out ends.
+    // forward_only unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A frame goes on
+    // from phase to phase and never back, whatever the registers held, but to its abort.
+    // phases_are_timed unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): Each phase has
+    // a timer that runs to the limit of this phase.
+    // phases_end unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A phase whose timer
+    // has run out ends.
     function [2:0] f_rank (input [2:0] of);
         case (of)
             PHASE_FIRST_LOW: f_rank = 3'd5;
@@ -728,7 +730,7 @@ module s6_two_channel_transaction (
     // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
     wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
     wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
-    wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
+    wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !start_now;
     always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
         `FORMAL_LABEL(forward_only) assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
         if ($past(aborts)) `FORMAL_LABEL(forward_only_abort) assert (phase == PHASE_ABORT);

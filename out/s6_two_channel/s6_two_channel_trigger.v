@@ -4,8 +4,8 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Triggers: three sources, one strobe for all channels; a card whose channels have triggers of their own takes them from the same hits
-// (channel_trigger).
+// Triggers: three sources, one strobe for all channels; a card whose channels have triggers of their own takes them from the same
+// hits (channel_trigger).
 //
 // trigger pin -> synchroniser -> rising edge --+
 // timer, every period_cycles ------------------+-- enabled? --> register --> trigger, trigger_count
@@ -51,35 +51,16 @@ module s6_two_channel_trigger (
     reg          sync2; initial sync2 = 1'b1;
     // Counts the timer period; held at its start while the timer source is disabled.
     reg   [23:0] timer; initial timer = 24'd2;
-    reg   [23:0] timer_next;
     // High if the low half of the timer was equal to that of the period one cycle ago.
     reg          timer_hit_low; initial timer_hit_low = 1'b0;
-    reg          timer_hit_low_next;
     // High if the high half of the timer was equal to that of the period one cycle ago.
     reg          timer_hit_high; initial timer_hit_high = 1'b0;
     // High for one cycle at each trigger.
     reg          strobe; initial strobe = 1'b0;
     // Triggers since reset, wrapping.
     reg   [31:0] count; initial count = 32'd0;
-    reg   [31:0] count_next;
 
-    always @* begin
-        count_next = count;
-        if (strobe) begin
-            count_next = count + 32'd1;
-        end
-    end
     assign timer_hit = timer_hit_low & timer_hit_high;
-
-    always @* begin
-        timer_hit_low_next = timer[11:0] == period_cycles[11:0];
-        timer_next = timer + 24'd1;
-        // Restarts while disabled: the first period is a whole one.
-        if (timer_hit | !sources[1]) begin
-            timer_next = TIMER_FIRST;
-            timer_hit_low_next = 1'b0;
-        end
-    end
     assign pin_hit = sync1 & !sync2;
     assign hit = {register, timer_hit, pin_hit} & sources;
     assign trigger = strobe;
@@ -99,11 +80,18 @@ module s6_two_channel_trigger (
             sync0 <= pin;
             sync1 <= sync0;
             sync2 <= sync1;
-            timer <= timer_next;
-            timer_hit_low <= timer_hit_low_next;
+            timer_hit_low <= timer[11:0] == period_cycles[11:0];
+            timer <= timer + 24'd1;
+            // Restarts while disabled: the first period is a whole one.
+            if (timer_hit | !sources[1]) begin
+                timer <= TIMER_FIRST;
+                timer_hit_low <= 1'b0;
+            end
             timer_hit_high <= timer[23:12] == period_cycles[23:12];
             strobe <= |hit;
-            count <= count_next;
+            if (strobe) begin
+                count <= count + 32'd1;
+            end
         end
     end
 endmodule

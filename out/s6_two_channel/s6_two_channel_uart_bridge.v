@@ -9,16 +9,15 @@
 // write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
 // read    02 len  a3 a2 a1 a0                                        04: all words from one address
 // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
-//
-// Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
-// after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
+// Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped after the
+// time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not
+// move on ends after it, too.
 //
 // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
 //
 // With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
-//
-// A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
-// waits, the second one comes later than any turn ends.
+// A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that
+// byte waits, the second one comes later than any turn ends.
 //
 // A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
 //
@@ -40,7 +39,8 @@ module s6_two_channel_uart_bridge (
     output wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     output wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
+    // nothing.
     output wire         access,
     // With access: write a word; low = read a byte.
     output wire         write,
@@ -72,16 +72,15 @@ module s6_two_channel_uart_bridge (
     // write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
     // read    02 len  a3 a2 a1 a0                                        04: all words from one address
     // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
-    //
-    // Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
-    // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
+    // Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped after the
+    // time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not
+    // move on ends after it, too.
     //
     // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
     //
     // With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
-    //
-    // A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
-    // waits, the second one comes later than any turn ends.
+    // A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word;
+    // that byte waits, the second one comes later than any turn ends.
     //
     // A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
     //
@@ -136,16 +135,12 @@ module s6_two_channel_uart_bridge (
     reg    [1:0] byte_lane_next;
     // Word to write; moves up by a byte as bytes come in or are taken.
     reg   [31:0] data; initial data = 32'd0;
-    reg   [31:0] data_next;
     // Last byte received for a write, until it moves into data.
     reg    [7:0] next_byte; initial next_byte = 8'd0;
-    reg    [7:0] next_byte_next;
     // High while next_byte waits.
     reg          has_byte; initial has_byte = 1'b0;
-    reg          has_byte_next;
     // High from the start of a write until it has been carried out.
     reg          write_busy; initial write_busy = 1'b0;
-    reg          write_busy_next;
     // High in the cycle after a byte of an answer was handed to the transmitter.
     reg          sent; initial sent = 1'b0;
     // High in the cycle after the last byte of a word.
@@ -165,13 +160,10 @@ module s6_two_channel_uart_bridge (
     reg          access_strobe; initial access_strobe = 1'b0;
     // High while a byte that was read waits for the transmitter.
     reg          byte_ready; initial byte_ready = 1'b0;
-    reg          byte_ready_next;
     // Microseconds since the last byte of the command.
     reg   [16:0] idle_us; initial idle_us = 17'd0;
-    reg   [16:0] idle_us_next;
     // High for one cycle when the time-out has ended the command.
     reg          expired; initial expired = 1'b0;
-    reg          expired_next;
     // High if the time-out starts again: a byte came or went, or no command is under way.
     reg          stop_timer; initial stop_timer = 1'b0;
     reg          stop_timer_next;
@@ -199,28 +191,6 @@ module s6_two_channel_uart_bridge (
         .tx(tx)
     );
 
-    always @* begin
-        write_busy_next = write_busy;
-        // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
-        if (access_strobe & writing) begin
-            write_busy_next = 1'b1;
-        end
-        if (done) begin
-            write_busy_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        idle_us_next = idle_us;
-        expired_next = idle_us == TIMEOUT_US;
-        if (tick_us) begin
-            idle_us_next = idle_us + 17'd1;
-        end
-        if (stop_timer | expired) begin
-            idle_us_next = 17'd0;
-            expired_next = 1'b0;
-        end
-    end
     // A frame that has begun goes first; none begins while an answer is due.
     assign from_stream = in_frame | (state != BRIDGE_STATE_READ);
 
@@ -235,20 +205,9 @@ module s6_two_channel_uart_bridge (
             transmitter_valid = push_valid;
         end
     end
+
     assign push_take = transmitter_accept & from_stream;
     assign answer_sent = transmitter_accept & !from_stream & !marker;
-
-    always @* begin
-        byte_ready_next = byte_ready;
-        // What ends a command before its time.
-        if (done & (state == BRIDGE_STATE_READ)) begin
-            byte_ready_next = 1'b1;
-        end
-        // What is left of an answer that was given up is not the beginning of the next one.
-        if (answer_sent | (state != BRIDGE_STATE_READ)) begin
-            byte_ready_next = 1'b0;
-        end
-    end
     // What a cycle begins with.
     assign last_lane = &byte_lane;
     assign high_bits = |receiver_data;
@@ -403,26 +362,8 @@ module s6_two_channel_uart_bridge (
             state_next = BRIDGE_STATE_COMMAND;
         end
     end
+
     assign data_moves = has_byte & !write_busy;
-
-    always @* begin
-        has_byte_next = has_byte;
-        next_byte_next = next_byte;
-        if (data_moves) begin
-            has_byte_next = 1'b0;
-        end
-        if (receiver_strobe & (state == BRIDGE_STATE_WRITE)) begin
-            next_byte_next = receiver_data;
-            has_byte_next = 1'b1;
-        end
-    end
-
-    always @* begin
-        data_next = data;
-        if (data_moves | take_byte) begin
-            data_next = {data[23:0], next_byte};
-        end
-    end
     // The access.
     assign word_address = address;
     assign in_range = !out_of_range;
@@ -466,10 +407,23 @@ module s6_two_channel_uart_bridge (
             address <= address_next;
             out_of_range <= out_of_range_next;
             byte_lane <= byte_lane_next;
-            data <= data_next;
-            next_byte <= next_byte_next;
-            has_byte <= has_byte_next;
-            write_busy <= write_busy_next;
+            if (data_moves | take_byte) begin
+                data <= {data[23:0], next_byte};
+            end
+            if (data_moves) begin
+                has_byte <= 1'b0;
+            end
+            if (receiver_strobe & (state == BRIDGE_STATE_WRITE)) begin
+                next_byte <= receiver_data;
+                has_byte <= 1'b1;
+            end
+            // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
+            if (access_strobe & writing) begin
+                write_busy <= 1'b1;
+            end
+            if (done) begin
+                write_busy <= 1'b0;
+            end
             sent <= answer_sent;
             word_end <= word_end_next;
             // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
@@ -478,9 +432,22 @@ module s6_two_channel_uart_bridge (
             step_address <= step_address_next;
             access_due <= access_due_next;
             access_strobe <= access_due;
-            byte_ready <= byte_ready_next;
-            idle_us <= idle_us_next;
-            expired <= expired_next;
+            // What ends a command before its time.
+            if (done & (state == BRIDGE_STATE_READ)) begin
+                byte_ready <= 1'b1;
+            end
+            // What is left of an answer that was given up is not the beginning of the next one.
+            if (answer_sent | (state != BRIDGE_STATE_READ)) begin
+                byte_ready <= 1'b0;
+            end
+            expired <= idle_us == TIMEOUT_US;
+            if (tick_us) begin
+                idle_us <= idle_us + 17'd1;
+            end
+            if (stop_timer | expired) begin
+                idle_us <= 17'd0;
+                expired <= 1'b0;
+            end
             stop_timer <= stop_timer_next;
             marked <= marked_next;
             marker <= marker_next;
@@ -494,8 +461,10 @@ module s6_two_channel_uart_bridge (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // write_is_whole: A word is written only when a whole command for it has come: code, length, four bytes of address, four of data, without framing error or time-out between them.
-    // first_word_as_sent: The first word that a command writes is the one that was sent, and goes to the address that was sent; an address beyond the map goes nowhere.
+    // write_is_whole: A word is written only when a whole command for it has come: code, length, four bytes of address, four of
+    // data, without framing error or time-out between them.
+    // first_word_as_sent: The first word that a command writes is the one that was sent, and goes to the address that was sent; an
+    // address beyond the map goes nowhere.
     // read_is_whole: A byte is read only while a read command that has come whole is being answered.
     reg [3:0] f_bytes; initial f_bytes = 4'd0;
     reg f_is_write; initial f_is_write = 1'b0;

@@ -42,25 +42,18 @@ module s6_two_channel_uart_receiver (
     reg          previous; initial previous = 1'b1;
     // High from the edge of a start bit to the sample of the stop bit.
     reg          active; initial active = 1'b0;
-    reg          active_next;
     // High until the start bit has been sampled at its middle.
     reg          in_start_bit; initial in_start_bit = 1'b0;
-    reg          in_start_bit_next;
     // System clock cycles since the edge or the last sample.
     reg   [14:0] count; initial count = 15'd0;
-    reg   [14:0] count_next;
     // High for one cycle when the line is sampled.
     reg          sample; initial sample = 1'b0;
-    reg          sample_next;
     // Bits received so far, the last one at the top; a marker bit falls out with the stop bit.
     reg    [9:0] shift; initial shift = 10'h200;
-    reg    [9:0] shift_next;
     // High for one cycle when a whole byte has come.
     reg          good; initial good = 1'b0;
-    reg          good_next;
     // High for one cycle when a byte ended with a LOW stop bit.
     reg          bad; initial bad = 1'b0;
-    reg          bad_next;
 
     always @* begin
         limit = LAST_COUNT;
@@ -68,43 +61,9 @@ module s6_two_channel_uart_receiver (
             limit = MIDDLE_COUNT;
         end
     end
+
     assign hit = count == limit;
-
-    always @* begin
-        count_next = count + 15'd1;
-        if (hit | !active) begin
-            count_next = 15'd0;
-        end
-    end
     assign shifted = {sync1, shift[9:1]};
-
-    always @* begin
-        in_start_bit_next = in_start_bit;
-        shift_next = shift;
-        active_next = active;
-        sample_next = hit & active;
-        good_next = 1'b0;
-        bad_next = 1'b0;
-        if (sample) begin
-            in_start_bit_next = 1'b0;
-            shift_next = shifted;
-            if (in_start_bit & sync1) begin
-                active_next = 1'b0;
-            end
-            if (shift[0]) begin
-                active_next = 1'b0;
-                good_next = sync1;
-                bad_next = !sync1;
-            end
-        end
-        if (!active) begin
-            shift_next = MARKER;
-            sample_next = 1'b0;
-            // An edge, not a level: a line held low is not a row of start bits.
-            active_next = previous & !sync1;
-            in_start_bit_next = 1'b1;
-        end
-    end
     assign data = shift[8:1];
     assign strobe = good;
     assign framing_error = bad;
@@ -125,13 +84,32 @@ module s6_two_channel_uart_receiver (
             sync0 <= rx;
             sync1 <= sync0;
             previous <= sync1;
-            active <= active_next;
-            in_start_bit <= in_start_bit_next;
-            count <= count_next;
-            sample <= sample_next;
-            shift <= shift_next;
-            good <= good_next;
-            bad <= bad_next;
+            sample <= hit & active;
+            good <= 1'b0;
+            bad <= 1'b0;
+            if (sample) begin
+                in_start_bit <= 1'b0;
+                shift <= shifted;
+                if (in_start_bit & sync1) begin
+                    active <= 1'b0;
+                end
+                if (shift[0]) begin
+                    active <= 1'b0;
+                    good <= sync1;
+                    bad <= !sync1;
+                end
+            end
+            if (!active) begin
+                shift <= MARKER;
+                sample <= 1'b0;
+                // An edge, not a level: a line held low is not a row of start bits.
+                active <= previous & !sync1;
+                in_start_bit <= 1'b1;
+            end
+            count <= count + 15'd1;
+            if (hit | !active) begin
+                count <= 15'd0;
+            end
         end
     end
 
@@ -143,7 +121,8 @@ module s6_two_channel_uart_receiver (
 `endif
 `ifndef FORMAL_ANY_STATE
     // byte_as_sampled: A byte is the eight samples between a LOW start bit and a HIGH stop bit, the first one lowest.
-    // samples_timed: The first sample of a byte is half a bit after its edge, less the delay of the synchroniser; each other one a bit after the one before, to the cycle.
+    // samples_timed: The first sample of a byte is half a bit after its edge, less the delay of the synchroniser; each other one a
+    // bit after the one before, to the cycle.
     reg [9:0] f_samples;
     reg [3:0] f_count; initial f_count = 4'd0;
     reg [14:0] f_since; initial f_since = 15'd0;

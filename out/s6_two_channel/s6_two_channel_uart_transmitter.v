@@ -30,35 +30,16 @@ module s6_two_channel_uart_transmitter (
     wire         take;
     // System clock cycles in the current bit.
     reg   [14:0] count; initial count = 15'd0;
-    reg   [14:0] count_next;
     // High for one cycle at the end of each bit.
     reg          bit_end; initial bit_end = 1'b0;
     // Bits still to be sent, the one on the line in bit 0.
     reg    [9:0] shift; initial shift = 10'd1;
-    reg    [9:0] shift_next;
     // High if only the stop bit is left.
     reg          empty; initial empty = 1'b1;
 
     // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
     assign hit = count == LAST_COUNT;
-
-    always @* begin
-        count_next = count + 15'd1;
-        if (hit) begin
-            count_next = 15'd0;
-        end
-    end
     assign take = bit_end & empty & valid;
-
-    always @* begin
-        shift_next = shift;
-        if (bit_end & !empty) begin
-            shift_next = {1'b0, shift[9:1]};
-        end
-        if (take) begin
-            shift_next = {1'b0, data, 1'b0} | STOP_BIT;
-        end
-    end
     assign accept = take;
     assign tx = shift[0];
 
@@ -69,9 +50,17 @@ module s6_two_channel_uart_transmitter (
             shift <= 10'd1;
             empty <= 1'b1;
         end else begin
-            count <= count_next;
+            count <= count + 15'd1;
+            if (hit) begin
+                count <= 15'd0;
+            end
             bit_end <= hit;
-            shift <= shift_next;
+            if (bit_end & !empty) begin
+                shift <= {1'b0, shift[9:1]};
+            end
+            if (take) begin
+                shift <= {1'b0, data, 1'b0} | STOP_BIT;
+            end
             // Only the stop bit is left, and it stays until there is something to send.
             empty <= !(|shift[9:1]);
         end
@@ -84,7 +73,8 @@ module s6_two_channel_uart_transmitter (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // byte_on_the_line: TX has a start bit, the eight bits of the byte as it was taken, lowest first, and a stop bit; otherwise it is HIGH.
+    // byte_on_the_line: TX has a start bit, the eight bits of the byte as it was taken, lowest first, and a stop bit; otherwise it
+    // is HIGH.
     // tx_bit_timed: TX changes at the end of a bit only, and from one end to the next it is a bit, to the cycle.
     reg [3:0] f_bit; initial f_bit = 4'd10;
     reg [7:0] f_byte;

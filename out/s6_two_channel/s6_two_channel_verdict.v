@@ -6,19 +6,19 @@
 
 // Verdict: what has happened to a frame is registered, then told with its primary cause.
 //
-// answer_taken, give_up ...  ____/~~\____________
-// taken, gave_up             _______/~~\_________    the flags are put together
-// prove                      ___________/~~\_____    what follows the answer fits, too
-// publish, late_fault, over  ______________/~~\__    cause and flags stay until the next one
-//
-// An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
-// not fall, additional data of another length) withdraws it.
+// answer_taken, give_up ...  ____/~~\_______________
+// taken, gave_up             _______/~~\____________    the flags are put together
+// prove                      ___________/~~\________    the bit that follows the answer fits, too
+// decides                    ______________/~~\_____    a cycle later: nothing that is sampled now is in this path
+// publish, late_fault, over  _________________/~~\__    cause and flags stay until the next one
+// An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA
+// does not fall, additional data of another length) withdraws it.
 module s6_two_channel_verdict (
     // System clock.
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // Flags that go with give_up, refuse or announce, see flag.
+    // Flags that go with give_up, refuse or announce; bits as the raw flags in the register map.
     input  wire  [19:0] found,
     // Strobe: the answer has been taken; CRC and error bits decide.
     input  wire         answer_taken,
@@ -68,9 +68,11 @@ module s6_two_channel_verdict (
     output wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     output wire   [4:0] cause_told,
-    // Raw flags, see flag.
+    // Raw flags, one bit for each fault; bits as in the register map.
     output wire  [19:0] flags_told,
-    // Strobe, instead of publish: the delay is measured, now the position itself.
+    // Strobe one cycle before publish.
+    output wire         publishes,
+    // Strobe, instead of publishes: the delay is measured, the position itself comes next.
     output wire         once_more,
     // Strobe: a trigger has been lost.
     output wire         displaced
@@ -84,31 +86,31 @@ module s6_two_channel_verdict (
 
     reg   [19:0] found_all;
     wire         crc_bad;
-    wire         bad_now;
+    wire         answer_bad;
     wire         proven;
+    wire         publishes_now;
     wire         measured;
+    // Flags that came with the last strobe.
     reg   [19:0] seen; initial seen = 20'd0;
+    // High for one cycle after prove, unless the frame was given up.
+    reg          prove_seen; initial prove_seen = 1'b0;
     reg          taken_now; initial taken_now = 1'b0;
     reg          gave_up_now; initial gave_up_now = 1'b0;
     reg          gave_up_late; initial gave_up_late = 1'b0;
     reg          refused; initial refused = 1'b0;
     reg          ended; initial ended = 1'b0;
     reg          overrun; initial overrun = 1'b0;
-    reg          overrun_next;
     reg          was_bad; initial was_bad = 1'b0;
-    reg          was_bad_next;
     reg          publish_now; initial publish_now = 1'b0;
     reg          good_now; initial good_now = 1'b0;
-    reg          once_more_now; initial once_more_now = 1'b0;
     reg          pending; initial pending = 1'b0;
-    reg          pending_next;
     reg          withdraw_now; initial withdraw_now = 1'b0;
     reg          confirm_now; initial confirm_now = 1'b0;
     reg          late_now; initial late_now = 1'b0;
-    reg          over_now; initial over_now = 1'b0;
+    // High from the end of a frame until its cause and flags are valid.
+    reg          telling; initial telling = 1'b0;
     reg          lost_now; initial lost_now = 1'b0;
     reg   [19:0] flags_now; initial flags_now = 20'd0;
-    reg   [19:0] flags_now_next;
 
     s6_two_channel_primary_cause u_chooser (
         .flags(flags_now),
@@ -116,27 +118,10 @@ module s6_two_channel_verdict (
     );
 
     assign crc_bad = !(crc_ok & stored_ok);
-
-    always @* begin
-        was_bad_next = was_bad;
-        if (taken_now) begin
-            was_bad_next = crc_bad;
-        end
-    end
-    assign bad_now = crc_bad | f1 | !f2;
+    assign answer_bad = crc_bad | f1 | !f2;
     assign is_pending = pending | taken_now;
-    assign proven = prove & is_pending;
-
-    always @* begin
-        pending_next = pending;
-        if (taken_now) begin
-            pending_next = 1'b1;
-        end
-        if (proven | gave_up_now) begin
-            pending_next = 1'b0;
-        end
-    end
-    assign measured = proven & is_measuring & !bad_now;
+    assign proven = prove_seen & pending & !gave_up_now;
+    assign measured = proven & is_measuring & !answer_bad;
 
     always @* begin
         found_all = seen;
@@ -160,28 +145,16 @@ module s6_two_channel_verdict (
         end
     end
 
-    always @* begin
-        flags_now_next = flags_now;
-        overrun_next = overrun;
-        if (proven | gave_up_now | refused) begin
-            flags_now_next = found_all;
-            // What ends a frame that measures is told to nobody.
-            if (!measured) begin
-                overrun_next = 1'b0;
-            end
-        end
-        if (lost) begin
-            overrun_next = 1'b1;
-        end
-    end
+    assign publishes_now = (proven & !measured) | refused | (gave_up_now & !gave_up_late);
+    assign publishes = publishes_now;
     assign is_received = taken_now & !crc_bad;
     assign is_doubtful = taken_now & crc_bad & was_bad;
     assign taken = taken_now;
     assign gave_up = gave_up_now;
-    assign is_telling = ended | gave_up_now | refused | over_now;
+    assign is_telling = telling;
     assign publish = publish_now;
     assign good = good_now;
-    assign once_more = once_more_now;
+    assign once_more = measured;
     assign late_fault = late_now;
     assign withdraw = withdraw_now;
     assign confirm = confirm_now;
@@ -191,6 +164,7 @@ module s6_two_channel_verdict (
     always @(posedge clock) begin
         if (reset) begin
             seen <= 20'd0;
+            prove_seen <= 1'b0;
             taken_now <= 1'b0;
             gave_up_now <= 1'b0;
             gave_up_late <= 1'b0;
@@ -200,35 +174,50 @@ module s6_two_channel_verdict (
             was_bad <= 1'b0;
             publish_now <= 1'b0;
             good_now <= 1'b0;
-            once_more_now <= 1'b0;
             pending <= 1'b0;
             withdraw_now <= 1'b0;
             confirm_now <= 1'b0;
             late_now <= 1'b0;
-            over_now <= 1'b0;
+            telling <= 1'b0;
             lost_now <= 1'b0;
             flags_now <= 20'd0;
         end else begin
             // Synthesis does not see by itself that some flags are never set.
             seen <= found & POSSIBLE;
+            // A frame that is given up has that as its one result.
+            prove_seen <= prove & is_pending & !gave_up_now;
             taken_now <= answer_taken;
             gave_up_now <= give_up & !gave_up_now;
-            gave_up_late <= give_up & !gave_up_now & is_late;
+            // Nothing has been published of a frame that measured.
+            gave_up_late <= give_up & !gave_up_now & is_late & !measured;
             refused <= refuse;
             ended <= normal_end;
-            overrun <= overrun_next;
-            was_bad <= was_bad_next;
-            publish_now <= (proven & !measured) | refused | (gave_up_now & !gave_up_late);
-            good_now <= proven & !bad_now;
-            once_more_now <= measured;
-            pending <= pending_next;
+            if (proven | gave_up_now | refused) begin
+                flags_now <= found_all;
+                // What ends a frame that measures is told to nobody.
+                if (!measured) begin
+                    overrun <= 1'b0;
+                end
+            end
+            if (lost_now) begin
+                overrun <= 1'b1;
+            end
+            if (taken_now) begin
+                was_bad <= crc_bad;
+            end
+            publish_now <= publishes_now;
+            good_now <= proven & !answer_bad;
+            if (taken_now) begin
+                pending <= 1'b1;
+            end
+            if (proven | gave_up_now) begin
+                pending <= 1'b0;
+            end
             withdraw_now <= gave_up_late;
             confirm_now <= ended;
             late_now <= gave_up_late;
-            // over comes with cause and flags of whatever ended the frame.
-            over_now <= ended | gave_up_now | refused;
+            telling <= normal_end | give_up | refuse | ended | gave_up_now | refused;
             lost_now <= lost;
-            flags_now <= flags_now_next;
         end
     end
 
@@ -253,16 +242,21 @@ module s6_two_channel_verdict (
     reg f_reason; initial f_reason = 1'b0;
     reg f_checked; initial f_checked = 1'b0;
     reg f_open; initial f_open = 1'b0;
+    reg f_proves; initial f_proves = 1'b0;
+    // an answer that was proved in the cycle before and is not given up in this one
+    wire f_proved = f_proves & f_open & !gave_up_now;
     always @(posedge clock) begin
-        f_checked <= !reset & prove & (f_open | taken_now) & crc_ok & stored_ok & !f1 & f2 & !settings_upset;
-        f_reason <= !reset & ((prove & (f_open | taken_now)) | refused | announced | gave_up_now);
+        f_proves <= !reset & prove & (f_open | taken_now) & !gave_up_now;
+        f_checked <= !reset & f_proved & crc_ok & stored_ok & !f1 & f2 & !settings_upset;
+        f_reason <= !reset & (f_proved | refused | announced | gave_up_now);
         if (taken_now) f_open <= 1'b1;
-        if (reset | gave_up_now | (prove & (f_open | taken_now))) f_open <= 1'b0;
+        if (reset | gave_up_now | f_proved) f_open <= 1'b0;
     end
     always @* begin
         `FORMAL_LABEL(good_means) assert (!good | f_checked);
         `FORMAL_LABEL(one_result_each) assert (!publish | f_reason);
         `FORMAL_LABEL(one_result_each_open) assert (f_open == pending);
+        `FORMAL_LABEL(one_result_each_proved) assert (f_proves == prove_seen);
     end
 `endif
 `undef FORMAL_LABEL

@@ -105,22 +105,22 @@ const BROKEN: [Change; 8] = [
     // another position, with its own parity
     (
         "snapshot",
-        "held_next = position_in;",
-        "held_next = position_in ^ 48'd4;",
+        "held <= position_in;",
+        "held <= position_in ^ 48'd4;",
         "what is published",
     ),
     // one position of 64
     (
         "snapshot",
-        "held_next = position_in;",
-        "held_next = (position_in == 48'd37) ? 48'd36 : position_in;",
+        "held <= position_in;",
+        "held <= (position_in == 48'd37) ? 48'd36 : position_in;",
         "what is published",
     ),
     // two bits change places: only some positions show it
     (
         "snapshot",
-        "held_next = position_in;",
-        "held_next = {position_in[47:2], position_in[0], position_in[1]};",
+        "held <= position_in;",
+        "held <= {position_in[47:2], position_in[0], position_in[1]};",
         "what is published",
     ),
     // one result less for some positions
@@ -139,14 +139,14 @@ const BROKEN: [Change; 8] = [
     // the clock goes on
     (
         "channel",
-        "oe_pin_next = sender_oe;",
-        "oe_pin_next = sender_oe | transaction_run;",
+        "oe_pin <= sender_oe;",
+        "oe_pin <= sender_oe | transaction_run;",
         "both drive DATA",
     ),
     (
         "command_sender",
-        "cells_left_next = 4'd8",
-        "cells_left_next = 4'd9",
+        "cells_left <= 4'd8",
+        "cells_left <= 4'd9",
         "both drive DATA",
     ),
     (
@@ -176,8 +176,8 @@ fn a_broken_channel_breaks_its_frames() {
     let report = broken(
         &SMALL,
         "snapshot",
-        "count_next = count + 16'd1",
-        "count_next = count + 16'd1 + {15'd0, held[5]}",
+        "count <= count + 16'd1",
+        "count <= count + 16'd1 + {15'd0, held[5]}",
     );
     assert!(report.broken.is_none(), "{report}");
 }
@@ -220,7 +220,7 @@ fn a_phase_that_edges_move_is_refused() {
         return;
     }
     for (from, to) in [
-        ("place_next = place - ~step;", "place_next = place - step;"),
+        ("place <= place - ~step;", "place <= place - step;"),
         (
             "distance = by + moved_by;",
             "distance = by + moved_by + 8'd4;",

@@ -177,14 +177,14 @@ const SPECIAL_MUTATIONS: &[Mutation] = &[
     mutation(
         "CRC not looked at",
         SPECIAL,
-        "is_wrong_next = is_wrong | (|crc_shifted);",
-        "is_wrong_next = is_wrong;",
+        "is_wrong <= is_wrong | (|crc_shifted);",
+        "is_wrong <= is_wrong;",
     ),
     mutation(
         "no recovery time of an encoder that keeps its last bit",
         HELD_PORT,
-        "timer_next = recovery_limit_cycles;",
-        "timer_next = 13'd0;",
+        "timer <= recovery_limit_cycles;",
+        "timer <= 13'd0;",
     ),
 ];
 
@@ -217,26 +217,26 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "parity of both copies together",
         PORT,
-        "first_next = 1'b1;\n                ones_next = 1'b0;\n                left_next = bits;",
-        "first_next = 1'b1;\n                left_next = bits;",
+        "first <= 1'b1;\n                    ones <= 1'b0;\n                    left <= bits;",
+        "first <= 1'b1;\n                    left <= bits;",
     ),
     mutation(
         "parity not looked at",
         PORT,
-        "not_even_next = not_even | (ones ^ filter_level ^ frame[4]);",
-        "not_even_next = not_even;",
+        "not_even <= not_even | (ones ^ filter_level ^ frame[4]);",
+        "not_even <= not_even;",
     ),
     mutation(
         "no LOW bit between copies looked at",
         PORT,
-        "if (second) begin\n                    not_low_next = not_low | filter_level;",
-        "if (second) begin\n                    not_low_next = not_low;",
+        "if (second) begin\n                        not_low <= not_low | filter_level;",
+        "if (second) begin\n                        not_low <= not_low;",
     ),
     mutation(
         "end not looked at",
         PORT,
-        "timer_next = recovery_limit_cycles;\n                    not_low_next = not_low | filter_level;",
-        "timer_next = recovery_limit_cycles;\n                    not_low_next = not_low;",
+        "timer <= recovery_limit_cycles;\n                        not_low <= not_low | filter_level;",
+        "timer <= recovery_limit_cycles;\n                        not_low <= not_low;",
     ),
     mutation(
         "copies not compared",
@@ -259,14 +259,14 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "LOW line not told",
         PORT,
-        "unknown_next = !frame[2];\n                not_high_next = !filter_level;",
-        "unknown_next = !frame[2];\n                not_high_next = 1'b0;",
+        "unknown <= !frame[2];\n                    not_high <= !filter_level;",
+        "unknown <= !frame[2];\n                    not_high <= 1'b0;",
     ),
     mutation(
         "a trigger in the frame not told",
         PORT,
-        "if (loses) begin\n            lost_next = 1'b1;",
-        "if (loses) begin\n            lost_next = 1'b0;",
+        "if (loses) begin\n                lost <= 1'b1;",
+        "if (loses) begin\n                lost <= 1'b0;",
     ),
     mutation(
         "clock too fast",
@@ -277,14 +277,14 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "least significant bit first",
         PORT,
-        "word_next = {word[46:0], value};",
-        "word_next = {value, word[47:1]};",
+        "word <= {word[46:0], value};",
+        "word <= {value, word[47:1]};",
     ),
     mutation(
         "the last position stays in front",
         PORT,
-        "word_next = 48'd0;",
-        "word_next = word;",
+        "trigger) begin\n                word <= 48'd0;",
+        "trigger) begin\n                word <= word;",
     ),
     mutation(
         "a bit taken at the falling edge",

@@ -86,8 +86,8 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "rate not to be set",
         TOP,
-        "3'd6: begin\n                    settings_next = strobes_written_data;",
-        "3'd6: begin\n                    settings_next = settings;",
+        "3'd6: begin\n                        settings <= strobes_written_data;",
+        "3'd6: begin\n                        settings <= settings;",
     ),
     mutation(
         "settings taken within an exchange",
@@ -98,14 +98,14 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "trigger pin dead",
         TOP,
-        "start_next = trigger_1 & !trigger_2;",
-        "start_next = 1'b0;",
+        "start <= trigger_1 & !trigger_2;",
+        "start <= 1'b0;",
     ),
     mutation(
         "trigger pin: both edges",
         TOP,
-        "start_next = trigger_1 & !trigger_2;",
-        "start_next = trigger_1 ^ trigger_2;",
+        "start <= trigger_1 & !trigger_2;",
+        "start <= trigger_1 ^ trigger_2;",
     ),
     mutation(
         "data one clock later",
@@ -117,7 +117,7 @@ const MUTATIONS: &[Mutation] = &[
         "data one clock sooner",
         BANKS,
         "assign word = out_data;",
-        "assign word = out_data_next;",
+        "assign word = {high_byte, low_byte};",
     ),
     mutation(
         "data driven without chip select",
@@ -134,8 +134,8 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "bytes of the multi-turn position exchanged",
         "reply_bytes",
-        "byte_bits_next = multi_bits[7:0];",
-        "byte_bits_next = multi_bits[15:8];",
+        "byte_bits <= multi_bits[7:0];",
+        "byte_bits <= multi_bits[15:8];",
     ),
     mutation(
         "communication alarm: delimiter missing",

@@ -10,8 +10,8 @@ pub const APB: &[Mutation] = &[
     mutation(
         "APB: byte address taken for a word address",
         "apb_front",
-        "address_next = paddr[12:2];",
-        "address_next = paddr[10:0];",
+        "address <= paddr[12:2];",
+        "address <= paddr[10:0];",
     ),
     mutation(
         "APB: answer before the word is there",
@@ -34,14 +34,14 @@ pub const APB: &[Mutation] = &[
     mutation(
         "interrupt: clear clears nothing",
         "interrupt",
-        "status_next = (status & ~write_data) | events_0;",
-        "status_next = status | events_0;",
+        "status <= (status & ~write_data) | events_0;",
+        "status <= status | events_0;",
     ),
     mutation(
         "interrupt: mask stays",
         "interrupt",
-        "mask_next = write_data;",
-        "mask_next = mask;",
+        "mask <= write_data;",
+        "mask <= mask;",
     ),
     mutation(
         "interrupt: channels at the wrong bits",
@@ -52,8 +52,8 @@ pub const APB: &[Mutation] = &[
     mutation(
         "direct output: told anew after a bad result",
         "direct_output_pair_64",
-        "running_next = fresh;",
-        "running_next = 1'b1;",
+        "running <= fresh;",
+        "running <= 1'b1;",
     ),
     mutation(
         "direct output: one bit too far",
@@ -64,14 +64,14 @@ pub const APB: &[Mutation] = &[
     mutation(
         "direct output: no strobe",
         "direct_output_pair_64",
-        "strobe_next = 1'b1;",
-        "strobe_next = 1'b0;",
+        "strobe <= 1'b1;",
+        "strobe <= 1'b0;",
     ),
     mutation(
         "direct output: causes one off",
         "direct_output_pair_64",
-        "error_next = error_causes[cause];",
-        "error_next = error_causes[0];",
+        "error <= error_causes[cause];",
+        "error <= error_causes[0];",
     ),
 ];
 
@@ -79,8 +79,8 @@ const WISHBONE: &[Mutation] = &[
     mutation(
         "Wishbone: address of the word behind",
         "wishbone_front",
-        "address_next = adr;",
-        "address_next = adr + 11'd1;",
+        "address <= adr;",
+        "address <= adr + 11'd1;",
     ),
     mutation(
         "Wishbone: whole words are refused",
@@ -97,8 +97,8 @@ const WISHBONE: &[Mutation] = &[
     mutation(
         "Wishbone: reads write",
         "wishbone_front",
-        "writing_next = we;",
-        "writing_next = 1'b1;",
+        "writing <= we;",
+        "writing <= 1'b1;",
     ),
 ];
 
@@ -106,26 +106,26 @@ const AXI_LITE: &[Mutation] = &[
     mutation(
         "AXI4-Lite: reads at the address of a write",
         "axi_lite_front",
-        "read_address_next = araddr[12:2];",
-        "read_address_next = awaddr[12:2];",
+        "read_address <= araddr[12:2];",
+        "read_address <= awaddr[12:2];",
     ),
     mutation(
         "AXI4-Lite: bytes in another order",
         "axi_lite_front",
-        "data_next = wdata;",
-        "data_next = {wdata[23:0], wdata[31:24]};",
+        "data <= wdata;",
+        "data <= {wdata[23:0], wdata[31:24]};",
     ),
     mutation(
         "AXI4-Lite: whole words are refused",
         "axi_lite_front",
-        "error_next = (|strobes) & !(&strobes);",
-        "error_next = |strobes;",
+        "error <= (|strobes) & !(&strobes);",
+        "error <= |strobes;",
     ),
     mutation(
         "AXI4-Lite: writes only read",
         "axi_lite_front",
-        "writing_next = 1'b1;",
-        "writing_next = 1'b0;",
+        "writing <= 1'b1;",
+        "writing <= 1'b0;",
     ),
 ];
 
@@ -166,20 +166,20 @@ const PARALLEL: &[Mutation] = &[
     mutation(
         "parallel: address of the window one bit off",
         "parallel_front",
-        "window_address_next = strobes_written_data[10:0];",
-        "window_address_next = strobes_written_data[11:1];",
+        "window_address <= strobes_written_data[10:0];",
+        "window_address <= strobes_written_data[11:1];",
     ),
     mutation(
         "parallel: low half twice",
         "parallel_front",
-        "window_high_next = words_read_data[31:16];",
-        "window_high_next = words_read_data[15:0];",
+        "window_high <= words_read_data[31:16];",
+        "window_high <= words_read_data[15:0];",
     ),
     mutation(
         "parallel: nothing is written",
         "parallel_front",
-        "wants_write_next = 1'b1;",
-        "wants_write_next = 1'b0;",
+        "wants_write <= 1'b1;",
+        "wants_write <= 1'b0;",
     ),
     mutation(
         "parallel: the lines are never free",
@@ -190,8 +190,8 @@ const PARALLEL: &[Mutation] = &[
     mutation(
         "parallel: the word is read whatever bit 14 says",
         "parallel_front",
-        "wants_read_next = !strobes_written_data[14];",
-        "wants_read_next = strobes_written_data[14];",
+        "wants_read <= !strobes_written_data[14];",
+        "wants_read <= strobes_written_data[14];",
     ),
 ];
 

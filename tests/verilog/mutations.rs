@@ -94,8 +94,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "line delay measured too long",
         "line_delay",
-        "delay_next = since_rise;",
-        "delay_next = since_rise + 10'd20;",
+        "delay <= since_rise;",
+        "delay <= since_rise + 10'd20;",
     ),
     mutation(
         "F2 ignored",
@@ -142,7 +142,7 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "trigger overrun not told",
         "verdict",
-        "overrun_next = 1'b1;",
-        "overrun_next = 1'b0;",
+        "overrun <= 1'b1;",
+        "overrun <= 1'b0;",
     ),
 ];

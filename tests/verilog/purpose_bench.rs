@@ -11,8 +11,8 @@ const BROKEN: &[Mutation] = &[
     mutation(
         "crop begins at the first bit",
         "direct_output_pair_64",
-        "at_next = first_bit;",
-        "at_next = 6'd0;",
+        "at <= first_bit;",
+        "at <= 6'd0;",
     ),
     mutation(
         "crop has no end",
@@ -23,20 +23,20 @@ const BROKEN: &[Mutation] = &[
     mutation(
         "selected causes stay",
         "direct_output_pair_64",
-        "error_causes_next = write_data;",
-        "error_causes_next = error_causes;",
+        "error_causes <= write_data;",
+        "error_causes <= error_causes;",
     ),
     mutation(
         "watchdog never ends a frame",
         "line_health",
-        "over_next = under_way & (|watchdog_us)",
-        "over_next = under_way & (&watchdog_us)",
+        "over <= under_way & (|watchdog_us)",
+        "over <= under_way & (&watchdog_us)",
     ),
     mutation(
         "watchdog: the service does not tell it",
         "service_channel",
-        "out_watchdog_next = io_out[11:0];",
-        "out_watchdog_next = out_watchdog;",
+        "out_watchdog <= io_out[11:0];",
+        "out_watchdog <= out_watchdog;",
     ),
     mutation(
         "recovery counter: kept at the falling edge of the clock",
@@ -63,8 +63,8 @@ const BROKEN_SERVICES: &[Mutation] = &[
     mutation(
         "one bit of the parameter too few",
         "command_sender",
-        "bits_left_next = PARAMETER_BITS;",
-        "bits_left_next = PARAMETER_BITS - 5'd1;",
+        "bits_left <= PARAMETER_BITS;",
+        "bits_left <= PARAMETER_BITS - 5'd1;",
     ),
     mutation(
         "driver off while the parameter is sent",
@@ -87,8 +87,8 @@ const BROKEN_SERVICES: &[Mutation] = &[
     mutation(
         "receivers that disagree, and nobody tells it",
         "second_receiver",
-        "different_next = 1'b1;",
-        "different_next = 1'b0;",
+        "different <= 1'b1;",
+        "different <= 1'b0;",
     ),
     mutation(
         "a run that the host cannot end",
@@ -143,8 +143,8 @@ const BROKEN_INFOS: &[Mutation] = &[
     mutation(
         "a LOW bit too few before the supplement",
         "command_sender",
-        "cells_left_next = 4'd9;",
-        "cells_left_next = 4'd8;",
+        "cells_left <= 4'd9;",
+        "cells_left <= 4'd8;",
     ),
     mutation(
         "additional data that have ended are waited for",
@@ -155,8 +155,8 @@ const BROKEN_INFOS: &[Mutation] = &[
     mutation(
         "additional data 2 taken for additional data 1",
         "add_info",
-        "second_next = word;",
-        "first_next = word;",
+        "second <= word;",
+        "first <= word;",
     ),
 ];
 
@@ -165,8 +165,8 @@ const BROKEN_START: &[Mutation] = &[
     mutation(
         "the histogram is not cleared",
         "line_monitor",
-        "clearing <= 1'b1;",
-        "clearing <= 1'b0;",
+        "frames <= 32'd0;\n                clearing <= 1'b1;",
+        "frames <= 32'd0;\n                clearing <= 1'b0;",
     ),
     mutation(
         "only some of the services' RAM is cleared",

@@ -138,26 +138,26 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "a bit one cycle too long",
         "bit_grid",
-        "left_next = bit_cycles;",
-        "left_next = bit_cycles + 7'd1;",
+        "left <= bit_cycles;",
+        "left <= bit_cycles + 7'd1;",
     ),
     mutation(
         "start bit half a bit late",
         "bit_grid",
-        "left_next = {1'b0, bit_cycles[6:1]};",
-        "left_next = bit_cycles;",
+        "left <= {1'b0, bit_cycles[6:1]};",
+        "left <= bit_cycles;",
     ),
     mutation(
         "multi-turn before single-turn position",
         ORDER,
-        "kind_next = FIELD_KIND_SINGLE0;",
-        "kind_next = FIELD_KIND_MULTI0;",
+        "kind <= FIELD_KIND_SINGLE0;",
+        "kind <= FIELD_KIND_MULTI0;",
     ),
     mutation(
         "no alarm field",
         ORDER,
-        "kind_next = FIELD_KIND_ALARM;",
-        "kind_next = FIELD_KIND_CRC;",
+        "kind <= FIELD_KIND_ALARM;",
+        "kind <= FIELD_KIND_CRC;",
     ),
     mutation(
         "EEPROM data of a write not sent",
@@ -174,8 +174,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "single-turn position MSB first",
         REPLY,
-        "single_bits_next = {level, single_bits[23:1]};",
-        "single_bits_next = {single_bits[22:0], level};",
+        "single_bits <= {level, single_bits[23:1]};",
+        "single_bits <= {single_bits[22:0], level};",
     ),
     mutation(
         "status taken as it was before",
@@ -204,8 +204,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "trigger overrun not told",
         PORT,
-        "lost_next = 1'b1;",
-        "lost_next = 1'b0;",
+        "lost <= 1'b1;",
+        "lost <= 1'b0;",
     ),
     mutation(
         "trigger within a request of the host not told",

@@ -61,14 +61,14 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "driver stays on for a bit",
         "command_sender",
-        "cells_left_next <= \"1000\";",
-        "cells_left_next <= \"1001\";",
+        "cells_left <= \"1000\";",
+        "cells_left <= \"1001\";",
     ),
     mutation(
         "delay measured a cycle too long",
         "line_delay",
-        "since_rise_next <= to_unsigned(1, 11);",
-        "since_rise_next <= to_unsigned(2, 11);",
+        "since_rise <= to_unsigned(1, 11);",
+        "since_rise <= to_unsigned(2, 11);",
     ),
     mutation(
         "samples at the edges of a bit",
@@ -79,8 +79,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "bus: the answer comes at once",
         "apb_front",
-        "ready_next <= '0';",
-        "ready_next <= '1';",
+        "else\n                ready <= '0';",
+        "else\n                ready <= '1';",
     ),
     mutation(
         "bus: address of another word",
@@ -91,20 +91,20 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "bus: a write is a read",
         "apb_front",
-        "writing_next <= pwrite;",
-        "writing_next <= '0';",
+        "writing <= pwrite;",
+        "writing <= '0';",
     ),
     mutation(
         "bytes of a word turned round",
         "word_access",
-        "data_next <= data(23 downto 0) & read_byte;",
-        "data_next <= read_byte & data(31 downto 8);",
+        "data <= data(23 downto 0) & read_byte;",
+        "data <= read_byte & data(31 downto 8);",
     ),
     mutation(
         "results are taken too early",
         "word_access",
-        "settle_next <= \"11\";",
-        "settle_next <= \"10\";",
+        "settle <= \"11\";",
+        "settle <= \"10\";",
     ),
     mutation(
         "setting: start value",
@@ -127,8 +127,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "direct output: strobe missing",
         "direct_output",
-        "strobe_next <= '1';",
-        "strobe_next <= '0';",
+        "strobe <= '1';",
+        "strobe <= '0';",
     ),
     mutation(
         "trigger: of every level",

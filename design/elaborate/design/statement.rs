@@ -101,6 +101,18 @@ impl Statement {
         }
     }
 
+    /// Calls `change` for every net that the statement assigns.
+    pub fn for_each_target_mut(&mut self, change: &mut dyn FnMut(&mut NetId)) {
+        if let Statement::Assign { net, .. } = self {
+            change(net);
+        }
+        self.for_each_inner_mut(&mut |statement| {
+            if let Statement::Assign { net, .. } = statement {
+                change(net);
+            }
+        });
+    }
+
     /// Calls `visit` for every expression in the statement.
     pub fn for_each_expr(&self, visit: &mut dyn FnMut(&Expr)) {
         match self {
@@ -120,15 +132,8 @@ impl Statement {
 
     /// Calls `change` for every net that the statement assigns or reads.
     pub fn for_each_net_mut(&mut self, change: &mut dyn FnMut(&mut NetId)) {
-        if let Statement::Assign { net, .. } = self {
-            change(net);
-        }
+        self.for_each_target_mut(change);
         self.for_each_expr_mut(&mut |expr| expr.for_each_net_mut(change));
-        self.for_each_inner_mut(&mut |statement| {
-            if let Statement::Assign { net, .. } = statement {
-                change(net);
-            }
-        });
     }
 
     /// Calls `change` for every expression in the statement.

@@ -4,8 +4,8 @@ use super::expression::{literal, named_literal};
 use super::ModulePrinter;
 use crate::elaborate::properties::words;
 use crate::elaborate::Parameter;
-use crate::printing::variant_name;
-use crate::verilog::text::{comment, vector, INDENT};
+use crate::printing::{variant_name, with_comment};
+use crate::verilog::text::{comment, vector, INDENT, MARK};
 
 impl ModulePrinter<'_> {
     /// What is named in the logic, with what it is.
@@ -17,9 +17,8 @@ impl ModulePrinter<'_> {
         }
         for state in self.scope.states() {
             out.push_str(&comment(state.docs, INDENT));
-            let doc = state.doc.map_or(String::new(), |doc| format!(" // {doc}"));
             let line = state_line(state.value, state.width_bits, state.name);
-            out.push_str(&format!("{INDENT}{line}{doc}\n"));
+            out.push_str(&with_comment(MARK, &line, state.doc, INDENT));
         }
         match out.is_empty() {
             true => out,

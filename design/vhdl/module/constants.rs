@@ -1,8 +1,8 @@
 //! Constants of a module: its parameters and states.
 
 use super::ModulePrinter;
-use crate::printing::INDENT;
-use crate::vhdl::text::{bits, comment, named_literal, subtype};
+use crate::printing::{with_comment, INDENT};
+use crate::vhdl::text::{bits, comment, named_literal, plain, subtype, MARK};
 
 impl ModulePrinter<'_> {
     /// What is named in the logic, with what it is.
@@ -19,11 +19,6 @@ impl ModulePrinter<'_> {
         }
         for state in self.scope.states() {
             out.push_str(&comment(state.docs, INDENT));
-            let doc = state.doc.map_or(String::new(), |doc| {
-                comment(std::slice::from_ref(doc), " ")
-                    .trim_end()
-                    .to_string()
-            });
             let subtype = subtype(state.width_bits);
             // A string, which a case takes as its choice.
             let value = match state.width_bits {
@@ -31,8 +26,12 @@ impl ModulePrinter<'_> {
                 width_bits => bits(state.value, width_bits),
             };
             let (name, width) = (state.name, state.name_width);
-            out.push_str(&format!(
-                "{INDENT}constant {name:width$} : {subtype} := {value};{doc}\n"
+            let line = format!("constant {name:width$} : {subtype} := {value};");
+            out.push_str(&with_comment(
+                MARK,
+                &line,
+                state.doc.map(plain).as_ref(),
+                INDENT,
             ));
         }
         match out.is_empty() {

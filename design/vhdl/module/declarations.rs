@@ -50,7 +50,7 @@ impl ModulePrinter<'_> {
     fn signals(&self) -> Vec<NetId> {
         let module = self.module;
         let mut others: BTreeSet<NetId> = module.ports.iter().map(|p| p.net).collect();
-        others.extend(self.direct_next.keys());
+        others.extend((0..module.nets.len()).filter(|net| self.clocked.has_no_net(*net)));
         let read = module.read_bits();
         for connection in module.instances.iter().flat_map(|i| &i.connections) {
             if connection.direction == Direction::Output {

@@ -3,18 +3,27 @@
 use super::expression::{choice, is_condition};
 use super::{Added, ModulePrinter};
 use crate::elaborate::{Expr, ExprKind, NetId, Statement};
-use crate::printing::{constant_values, processes, reads_and_targets, INDENT};
+use crate::printing::{constant_values, reads_and_targets, INDENT};
 use crate::vhdl::text::{comment, literal, subtype, wrapped, Context};
 use std::collections::BTreeSet;
 
 /// Where a list of signals goes on in the next line.
 const LINE: usize = 110;
 
+/// Declarations of variables with these names and widths.
+pub(in crate::vhdl) fn variable_lines(variables: &[(String, usize)]) -> String {
+    let width = variables.iter().map(|(name, _)| name.len()).max();
+    let (width, pad) = (width.unwrap_or(0), INDENT.repeat(2));
+    (variables.iter())
+        .map(|(name, bits)| format!("{pad}variable {name:width$} : {};\n", subtype(*bits)))
+        .collect()
+}
+
 impl ModulePrinter<'_> {
-    /// All processes; those that give nothing but the next value of a register stand there.
+    /// Processes outside clocked ones.
     pub(super) fn processes(&mut self) -> String {
         let mut out = String::new();
-        for process in processes(self.module, &self.direct_next) {
+        for process in self.clocked.processes.clone() {
             out.push_str(&self.process(&process.statements));
         }
         out
@@ -54,17 +63,9 @@ impl ModulePrinter<'_> {
         let mut declared: Vec<(String, usize)> = (variables.iter())
             .map(|(net, name)| (name.clone(), self.module.nets[*net].width_bits))
             .collect();
-        let subjects = std::mem::take(&mut self.subjects).into_iter();
-        declared.extend(subjects.map(|s| (s.name, s.width_bits)));
-        let width = declared
-            .iter()
-            .map(|(name, _)| name.len())
-            .max()
-            .unwrap_or(0);
+        declared.extend(self.taken_subjects());
+        let declared = variable_lines(&declared);
         let pad = INDENT.repeat(2);
-        let declared: String = (declared.iter())
-            .map(|(name, bits)| format!("{pad}variable {name:width$} : {};\n", subtype(*bits)))
-            .collect();
         let given: String = (variables.iter())
             .map(|(net, name)| format!("{pad}{} <= {name};\n", self.reference(*net)))
             .collect();
@@ -72,6 +73,12 @@ impl ModulePrinter<'_> {
             "\n{INDENT}process ({})\n{declared}{INDENT}begin\n{body}{given}{INDENT}end process;\n\n",
             wrapped(&list, LINE).join(&format!("\n{INDENT}         "))
         )
+    }
+
+    /// Names and widths of the variables that hold subjects of the process that has been printed.
+    pub fn taken_subjects(&mut self) -> Vec<(String, usize)> {
+        let subjects = std::mem::take(&mut self.subjects).into_iter();
+        subjects.map(|s| (s.name, s.width_bits)).collect()
     }
 
     /// Statements that assign whole signals and read none of them need no process.
@@ -125,7 +132,7 @@ impl ModulePrinter<'_> {
         }
     }
 
-    fn block(&mut self, statements: &[Statement], depth: usize) -> String {
+    pub fn block(&mut self, statements: &[Statement], depth: usize) -> String {
         let texts = statements.iter().map(|s| self.statement(s, depth));
         texts.collect()
     }

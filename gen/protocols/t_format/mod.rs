@@ -91,6 +91,7 @@ pub fn emit_in(receiver: &Receiver, language: Language) -> Result<Vec<Artifact>,
         crate::artifact::README,
         render("receiver_readme", readme, &context)?,
     ));
+    artifact::wrap_comments(&mut artifacts);
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
 }

@@ -6,9 +6,9 @@ use rust_hdl::prelude::*;
 /// Picks the cause that explains the others; what stands later wins.
 #[derive(LogicBlock, Block)]
 pub struct PrimaryCause {
-    /// Raw flags, see [`super::cause::flag`](mod@super::cause::flag).
+    /// Raw flags, one bit for each fault; bits as in the register map.
     pub flags: Signal<In, Bits<20>>,
-    /// Primary cause, see [`super::cause`].
+    /// Primary cause; numbers as in the register map.
     pub cause: Signal<Out, Bits<5>>,
 }
 

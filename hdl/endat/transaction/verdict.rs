@@ -27,7 +27,7 @@ pub struct Verdict {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Flags that go with `give_up`, `refuse` or `announce`, see [`cause::flag`](mod@cause::flag).
+    /// Flags that go with `give_up`, `refuse` or `announce`; bits as the raw flags in the register map.
     pub found: Signal<In, Bits<20>>,
     /// Strobe: the answer has been taken; CRC and error bits decide.
     pub answer_taken: Signal<In, Bit>,

@@ -51,7 +51,7 @@ pub struct SsiPort {
     pub period_cycles: Signal<In, Bits<11>>,
     /// How much longer than half a period the first low phase is.
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
-    /// Kind of frame, see [`frame`]: bit 0 Gray code, bit 1 each position twice, bit 2 a frame may go out, bit 3 parity.
+    /// Kind of frame: bit 0 Gray code, bit 1 each position twice, bit 2 a frame may go out, bit 3 parity.
     pub frame: Signal<In, Bits<6>>,
     /// Position width, 1 to 48 bits.
     pub position_bits: Signal<In, Bits<6>>,

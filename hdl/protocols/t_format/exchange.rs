@@ -94,7 +94,7 @@ pub struct Exchange {
     pub publish: Signal<Out, Bit>,
     /// The reply is good.
     pub good: Signal<Out, Bit>,
-    /// Raw flags, see [`super::cause`].
+    /// Raw flags, one bit for each fault; bits as in the register map.
     pub flags: Signal<Out, Bits<16>>,
     /// The ID that the reply repeats.
     pub reply_id: Signal<Out, Bits<4>>,

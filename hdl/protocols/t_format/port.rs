@@ -67,7 +67,7 @@ pub struct TFormatPort {
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
-    /// Word that the host accesses, see [`word`].
+    /// Word that the host accesses, counted from the first of the port in the register map.
     pub host_address: Signal<In, Bits<3>>,
     /// Strobe: read it.
     pub host_read: Signal<In, Bit>,

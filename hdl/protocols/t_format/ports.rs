@@ -91,6 +91,6 @@ pub struct Reading {
     pub crc: Bits<8>,
     /// ID that the last reply repeats.
     pub reply_id: Bits<4>,
-    /// Raw flags of the last exchange, see [`super::cause`].
+    /// Raw flags of the last exchange; bits as in the register map.
     pub flags: Bits<16>,
 }

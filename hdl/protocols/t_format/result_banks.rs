@@ -36,7 +36,7 @@ pub struct ResultBanks {
     pub hold: Signal<Out, Bit>,
     /// The reply is good.
     pub good: Signal<In, Bit>,
-    /// Raw flags, see [`super::cause`].
+    /// Raw flags, one bit for each fault; bits as in the register map.
     pub flags: Signal<In, Bits<16>>,
     /// ID that the reply repeats.
     pub reply_id: Signal<In, Bits<4>>,
@@ -49,7 +49,7 @@ pub struct ResultBanks {
     /// What replies to a request bring.
     #[bundle]
     pub parts: ReplyPartsIn,
-    /// Next byte of the reply, see [`super::reply_bytes`].
+    /// Next byte of the reply.
     pub head: Signal<In, Bits<8>>,
     /// The one following it.
     pub second: Signal<In, Bits<8>>,

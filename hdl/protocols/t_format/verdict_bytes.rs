@@ -9,7 +9,7 @@ use rust_hdl::prelude::*;
 pub struct VerdictBytes {
     /// The reply is good.
     pub good: Signal<In, Bit>,
-    /// Raw flags, see [`super::cause`].
+    /// Raw flags, one bit for each fault; bits as in the register map.
     pub flags: Signal<In, Bits<16>>,
     /// ID that the reply repeats.
     pub reply_id: Signal<In, Bits<4>>,
