@@ -33,10 +33,13 @@ always @* if (!HAS_ALL & !HAS_CONTINUOUS) begin
     one_result_per_trigger_lemma_once: assert (!answered | !verdict_is_pending | verdict_publishes | verdict_once_more | aborts);
     one_result_per_trigger_lemma_where: assert (!answered | aborts | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
     one_result_per_trigger_lemma_tail: assert ((phase != PHASE_TAIL) | verdict_is_pending | aborts);
-    one_result_per_trigger_lemma_sampled: assert (!tail_sampled | !f_in_frame | (phase == PHASE_RECOVERY));
+    one_result_per_trigger_lemma_sampled: assert (!tail_sampled | start_now | !f_in_frame | (phase == PHASE_RECOVERY));
     one_result_per_trigger_lemma_proved: assert ((phase != PHASE_RECOVERY) | aborts | !owing | (tail_sampled ? answered | once_more | verdict_once_more : verdict_is_pending));
     one_result_per_trigger_lemma_told: assert (!answered | !owing | verdict_publishes | verdict_once_more | f_tells | aborts);
     one_result_per_trigger_lemma_result: assert (!(verdict_publishes | verdict_once_more) | answered | f_tells | aborts);
+    one_result_per_trigger_lemma_pending: assert (!verdict_is_pending | f_in_frame | aborts);
+    one_result_per_trigger_lemma_single: assert (!(verdict_is_pending & f_tells) | aborts);
+    one_result_per_trigger_lemma_after: assert (!((phase == PHASE_RECOVERY) & tail_sampled & verdict_is_pending) | verdict_publishes | verdict_once_more | aborts);
     one_result_per_trigger_lemma_owing: assert (f_in_frame | !owing | once_more | aborts | publish);
     one_result_per_trigger_lemma_open: assert (f_owed == (owing | f_tells | publish));
 end

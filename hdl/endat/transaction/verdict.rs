@@ -179,7 +179,8 @@ impl Logic for Verdict {
     fn update(&mut self) {
         // Synthesis does not see by itself that some flags are never set.
         self.seen.d.next = self.found.val() & self.possible.val();
-        self.taken_now.d.next = self.answer_taken.val();
+        // An answer that is complete in the cycle of an abort is not left pending for the next frame.
+        self.taken_now.d.next = self.answer_taken.val() & !self.gave_up_now.q.val();
         self.gave_up_now.d.next = self.give_up.val() & !self.gave_up_now.q.val();
         // Nothing has been published of a frame that measured.
         self.gave_up_late.d.next = self.give_up.val()
