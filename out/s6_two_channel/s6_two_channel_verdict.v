@@ -186,7 +186,8 @@ module s6_two_channel_verdict (
             seen <= found & POSSIBLE;
             // A frame that is given up has that as its one result.
             prove_seen <= prove & is_pending & !gave_up_now;
-            taken_now <= answer_taken;
+            // An answer that is complete in the cycle of an abort is not left pending for the next frame.
+            taken_now <= answer_taken & !gave_up_now;
             gave_up_now <= give_up & !gave_up_now;
             // Nothing has been published of a frame that measured.
             gave_up_late <= give_up & !gave_up_now & is_late & !measured;
