@@ -87,7 +87,9 @@ module s6_two_channel_receiver (
     // CRC computed from the bits as they came.
     output wire   [4:0] crc_computed
 );
+    // Start value of covered; it is 0 after the skipped cells.
     localparam   [3:0] SKIP_FROM = 4'd5;
+    // Cells of a frame without F2, payload and additional data.
     localparam   [6:0] FIXED_CELLS = 7'd17;
     // What the next sample is.
     localparam   [3:0] FIELD_SKIP = 4'd0; // Cells before the earliest start bit: the line is undefined.
@@ -102,67 +104,112 @@ module s6_two_channel_receiver (
     localparam   [3:0] FIELD_DONE = 4'd9; // The answer is complete.
     localparam   [3:0] FIELD_SUPPLEMENT = 4'd10; // Cells of the supplement: the line is ours or undefined.
 
+    // High if the last bit has been sampled.
     wire         is_taken;
+    // High when a cell is skipped: with each sample, or with each clock edge if the delay is measured.
     reg          skip_step;
+    // High with the sample of a bit that the CRC covers.
     reg          covered_bit;
+    // High if the received CRC is that of the bits as they came.
     wire         crc_fits;
+    // High if the word is shifted by one bit.
     wire         shift;
+    // Bit that enters the word: a sample, or 0 during the alignment.
     wire         bit_in;
+    // High if a bit enters the word at bit 49.
     wire         in50;
+    // High if a bit enters the word at bit 34.
     wire         in35;
+    // High if a bit enters the word at bit 19.
     wire         in20;
+    // High if a bit enters the word at bit 4.
     wire         in5;
+    // Value of covered at which the word is aligned.
     reg    [3:0] aligned_at;
+    // covered after one more cell or bit.
     reg    [3:0] covered_next;
+    // High with the sample of a CRC bit.
     reg          crc_bit;
+    // High with a HIGH sample where the start bit may come.
     wire         start_sample;
+    // The word shifted by one bit.
     reg   [49:0] shifted;
+    // High if a cell has passed without a start bit: the frame needs one more pulse.
     wire         one_more;
+    // High if a pulse that the answer needs is sent.
     wire         one_less;
+    // High with a sample that counts a cell.
     wire         counts;
+    // Bits of the payload, or of the block under way.
     wire   [5:0] width;
+    // Cells of the frame besides its payload.
     reg    [6:0] cells_around;
     wire   [4:0] crc_crc;
+    // Part of the answer to which the next sample belongs.
     reg    [3:0] field; initial field = FIELD_DONE;
     reg    [3:0] field_next;
+    // Cells until the end of the frame; those that wait for the start bit are not counted.
     reg    [6:0] left; initial left = 7'd0;
     reg    [6:0] left_next;
     // The cell that comes is the last one of the payload.
     reg          payload_ends; initial payload_ends = 1'b0;
     // The cell that comes is the last one of the CRC.
     reg          crc_ends; initial crc_ends = 1'b0;
+    // Clock pulses that the frame still needs.
     reg    [6:0] to_send; initial to_send = 7'd0;
     reg    [6:0] to_send_next;
+    // Bits of the answer as they come in; the payload from bit 0 on when they are aligned.
     reg   [49:0] word; initial word = 50'd0;
     reg   [49:0] word_next;
+    // Cells that are skipped, then bits that are shifted in, modulo 15.
     reg    [3:0] covered; initial covered = 4'd0;
     reg    [3:0] covered_d;
+    // Error bit F1 of the answer.
     reg          f1_bit; initial f1_bit = 1'b0;
     reg          f1_bit_next;
+    // Error bit F2 of the answer; high in frames without it.
     reg          f2_bit; initial f2_bit = 1'b1;
     reg          f2_bit_next;
+    // CRC as received; bit 4 came first.
     reg    [4:0] crc_bits; initial crc_bits = 5'd0;
+    // CRC of the bits as they came; valid one cycle after take_crc.
     reg    [4:0] crc_calc; initial crc_calc = 5'd0;
     reg    [4:0] crc_calc_next;
+    // High for one cycle when the last bit of the payload is in the word: its CRC is stored.
     reg          take_crc; initial take_crc = 1'b0;
+    // High while the word is shifted down to bit 0.
     reg          align; initial align = 1'b0;
     reg          align_next;
+    // High in the first cycle of the alignment, which never ends it.
     reg          align_first; initial align_first = 1'b0;
+    // High for one cycle after the last bit of an answer or block has been sampled.
     reg          last_taken; initial last_taken = 1'b0;
     reg          last_taken_next;
+    // High for one cycle: an answer or a block of additional data is complete.
     reg          done_now; initial done_now = 1'b0;
+    // High if the counts of cells and pulses agree that this cell is the last one.
     reg          used; initial used = 1'b0;
+    // High if the counts of cells and pulses agree that no cell is left.
     reg          ended; initial ended = 1'b0;
+    // High if the received CRC is that of the bits as they came.
     reg          crc_equal; initial crc_equal = 1'b0;
+    // High for one cycle after a start bit whose edge is outside the window.
     reg          refused; initial refused = 1'b0;
+    // High for one cycle after the sample of a covered bit: bit_now is shifted in.
     reg          shift_now; initial shift_now = 1'b0;
+    // level in the cycle before.
     reg          bit_now; initial bit_now = 1'b0;
+    // High for one cycle after the last bit of the payload has been sampled.
     reg          last_payload; initial last_payload = 1'b0;
     reg          last_payload_next;
+    // High while field is Start; one cycle late.
     reg          hunting_now; initial hunting_now = 1'b0;
+    // High while field is neither Skip nor Start; one cycle late.
     reg          started_now; initial started_now = 1'b0;
+    // Rounds of 15 cells that are skipped after the present one.
     reg    [1:0] skip_rounds; initial skip_rounds = 2'd0;
     reg    [1:0] skip_rounds_next;
+    // Blocks of additional data whose separator has not come yet.
     reg    [1:0] infos_left; initial infos_left = 2'd0;
     reg    [1:0] infos_left_next;
     wire         _unused_ok = &{1'b0, start_supplement};

@@ -118,9 +118,13 @@ module s6_two_channel_transaction (
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles
 );
+    // Time tR that DATA must be LOW before a frame, in system clock cycles.
     localparam  [15:0] READY_LOW_CYCLES = 16'd51;
+    // Quiet time after an aborted frame, in microseconds.
     localparam  [15:0] ABORT_US = 16'd30000;
+    // CLOCK LOW between an answer and its supplement, in system clock cycles.
     localparam  [15:0] PARK_CYCLES = 16'd200;
+    // Bit of the timer that rises only when a wait is longer than any answer.
     localparam  [15:0] FRAME_US = 16'd4096;
     localparam  [19:0] DATA_NOT_LOW = 20'd1;
     localparam  [19:0] NO_START_BIT = 20'd2;
@@ -139,28 +143,48 @@ module s6_two_channel_transaction (
     localparam   [2:0] PHASE_ABORT = 3'd6; // Quiet after an aborted frame.
     localparam   [2:0] PHASE_PARK = 3'd7; // Clock LOW between answer and supplement.
 
+    // Limit of the timer in this phase.
     reg   [15:0] limit;
+    // High in the phases of a frame in which its cells run.
     reg          running;
+    // High if the timer counts microseconds in this phase, low if it counts system clock cycles.
     reg          in_us;
     reg          timer_clear;
+    // High for one cycle when the last rising edge of CLOCK has come back: the recovery time begins.
     wire         rise_back;
     wire         in_tail;
     wire         in_recovery;
+    // High for one cycle: a frame begins.
     reg          accept;
+    // High if the frame, or the wait for one, ends with the fault in found.
     reg          give_up;
+    // High if a trigger in this cycle is not lost: it begins a frame, or reports at once why not.
     reg          idle;
+    // High if a trigger, an owed position or a request asks for a frame.
     wire         wanted;
+    // trigger, unless frames are held off.
     wire         triggered;
+    // High for one cycle: this trigger has a result without a frame.
     reg          refuse;
+    // High for one cycle: the frame has ended without being given up.
     reg          normal_end;
+    // High if the start bit has come and all pulses of the frame are sent; low before a supplement.
     wire         sent;
+    // Flags of the faults found in this cycle.
     reg   [19:0] found;
+    // High for one cycle: the answer and its CRC have been received.
     reg          answer_taken;
+    // High if the present wait is longer than any answer: the receiver has lost its place.
     wire         endless;
+    // High if the propagation delay is measured or fixed.
     wire         known;
+    // High for one cycle: a trigger is lost.
     wire         lost;
+    // High if the position after a measuring frame asks for a frame.
     wire         owed;
+    // High for one cycle when the bit after the answer shows that the answer has the right length.
     reg          proof;
+    // High if the delay must be measured again: on request, after a plug or after an upset.
     wire         afresh;
     wire         last_edge_all_sent;
     wire         last_edge_holds;
@@ -173,45 +197,70 @@ module s6_two_channel_transaction (
     wire         verdict_is_telling;
     wire         verdict_publishes;
     wire         verdict_once_more;
+    // Phase of the frame, or of the pause between two frames.
     reg    [2:0] phase; initial phase = PHASE_NOT_READY;
     reg    [2:0] phase_next;
+    // Time since the present wait began: microseconds in Frame, Tail and Abort, else system clock cycles.
     reg   [15:0] timer; initial timer = 16'd0;
+    // limit, one cycle later.
     reg   [15:0] timer_limit; initial timer_limit = 16'd0;
+    // High when the timer has reached its limit; low again when the next wait begins.
     reg          timer_hit; initial timer_hit = 1'b0;
+    // High in a cycle in which the timer counts: every cycle, or one for each microsecond.
     reg          timer_step; initial timer_step = 1'b0;
+    // High while CLOCK is held LOW: first low phase, wait for the start bit, or pause before the supplement.
     reg          hold; initial hold = 1'b0;
+    // High for one cycle after accept: the frame begins.
     reg          start_now; initial start_now = 1'b0;
+    // running, one cycle later.
     reg          run_now; initial run_now = 1'b0;
+    // High if the first low phase of a frame is longer than the others.
     reg          extra; initial extra = 1'b0;
+    // High while CLOCK stays HIGH: no frame runs, or the frame is given up, or the running clock is left.
     reg          stop_now; initial stop_now = 1'b1;
+    // Set when the delay is measured; cleared by an abort, two wrong CRCs in a row, afresh or a fixed delay.
     reg          is_calibrated; initial is_calibrated = 1'b0;
     reg          is_calibrated_next;
+    // Set when a frame begins that finds the delay from its start edge; cleared in its tail or by the next frame.
     reg          acquiring; initial acquiring = 1'b0;
     reg          acquiring_next;
+    // High if the frame runs at the calibration clock; set or cleared with accept, cleared after the tail.
     reg          slow_now; initial slow_now = 1'b0;
     reg          slow_now_next;
+    // Set when the cell after the answer has been sampled in Recovery; cleared when a frame begins.
     reg          tail_sampled; initial tail_sampled = 1'b0;
     reg          tail_sampled_next;
+    // Recovery time tm of the last frame, in system clock cycles.
     reg   [12:0] recovery; initial recovery = 13'd0;
     reg   [12:0] recovery_next;
+    // High for one cycle: the supplement begins.
     reg          supplement_now; initial supplement_now = 1'b0;
     reg          supplement_now_next;
+    // Set when the result of the frame is certain; a fault after that is a late one. Cleared with the frame.
     reg          answered; initial answered = 1'b0;
     reg          answered_next;
+    // hunting in the cycle before.
     reg          was_hunting; initial was_hunting = 1'b0;
+    // center in the cycle before.
     reg          was_center; initial was_center = 1'b0;
+    // High in the cycle after timer_clear or rise_back: the timer restarts.
     reg          cleared; initial cleared = 1'b1;
-    // DATA was HIGH between two frames in the cycle before.
+    // High for one cycle: DATA was HIGH between two frames, so an encoder may have been plugged.
     reg          plugged; initial plugged = 1'b0;
     reg          plugged_next;
-    // The recovery time has begun in the cycle before.
+    // High for one cycle after rise_back: the timer restarts with the cycles that have passed since.
     reg          is_back; initial is_back = 1'b0;
+    // High if DATA has been HIGH since the last microsecond tick.
     reg          high_at_tick; initial high_at_tick = 1'b0;
+    // High from the trigger of a frame until its result is published.
     reg          owing; initial owing = 1'b0;
+    // High if the frame begun last runs at the calibration clock, to measure the delay.
     reg          measuring; initial measuring = 1'b0;
     reg          measuring_next;
+    // High from the end of a measuring frame until the frame begins that brings the trigger's position.
     reg          once_more; initial once_more = 1'b0;
     reg          once_more_next;
+    // High from the start of a frame until it ends or is given up.
     reg          under_way; initial under_way = 1'b0;
     reg          under_way_next;
 

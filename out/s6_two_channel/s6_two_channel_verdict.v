@@ -77,6 +77,7 @@ module s6_two_channel_verdict (
     // Strobe: a trigger has been lost.
     output wire         displaced
 );
+    // Flags that this core can find.
     localparam  [19:0] POSSIBLE = 20'h80647;
     localparam  [19:0] CRC_WRONG = 20'd8;
     localparam  [19:0] PARALLEL_WRONG = 20'h100;
@@ -84,32 +85,53 @@ module s6_two_channel_verdict (
     localparam  [19:0] F2_CLEAR = 20'd32;
     localparam  [19:0] TRIGGER_OVERRUN = 20'd128;
 
+    // Flags to report: those that came with the strobe, of the answer, of lost triggers and of upsets.
     reg   [19:0] found_all;
+    // High if the received CRC does not fit the bits as they came, or as they are stored.
     wire         crc_bad;
+    // High if the answer has a wrong CRC or an alarm bit.
     wire         answer_bad;
+    // High for one cycle: the answer has the right length.
     wire         proven;
+    // High for one cycle: the result is published in the next cycle.
     wire         publishes_now;
+    // High with proven if the answer has measured the delay: the position itself comes with another frame.
     wire         measured;
     // Flags that came with the last strobe.
     reg   [19:0] seen; initial seen = 20'd0;
     // High for one cycle after prove, unless the frame was given up.
     reg          prove_seen; initial prove_seen = 1'b0;
+    // answer_taken, one cycle later.
     reg          taken_now; initial taken_now = 1'b0;
+    // give_up, one cycle later; never in two cycles in a row.
     reg          gave_up_now; initial gave_up_now = 1'b0;
+    // High with gave_up if the result of the frame is already published.
     reg          gave_up_late; initial gave_up_late = 1'b0;
+    // refuse, one cycle later.
     reg          refused; initial refused = 1'b0;
+    // normal_end, one cycle later.
     reg          ended; initial ended = 1'b0;
+    // Set when a trigger is lost; cleared when a result has reported it.
     reg          overrun; initial overrun = 1'b0;
+    // High if the last answer had a wrong CRC.
     reg          was_bad; initial was_bad = 1'b0;
+    // High for one cycle: the result of a trigger is published.
     reg          publish_now; initial publish_now = 1'b0;
+    // High for one cycle: the answer is good and has the right length.
     reg          good_now; initial good_now = 1'b0;
+    // Set when an answer is taken; cleared when its length is proven or the frame is given up.
     reg          pending; initial pending = 1'b0;
+    // High for one cycle: the published position is withdrawn.
     reg          withdraw_now; initial withdraw_now = 1'b0;
+    // High for one cycle: the published position is final.
     reg          confirm_now; initial confirm_now = 1'b0;
+    // High for one cycle: a fault that was found after the result is reported.
     reg          late_now; initial late_now = 1'b0;
     // High from the end of a frame until its cause and flags are valid.
     reg          telling; initial telling = 1'b0;
+    // lost, one cycle later.
     reg          lost_now; initial lost_now = 1'b0;
+    // Flags of the last result or later fault; the primary cause is chosen from them.
     reg   [19:0] flags_now; initial flags_now = 20'd0;
 
     s6_two_channel_primary_cause u_chooser (

@@ -89,7 +89,9 @@ pub struct Verdict {
     chooser: PrimaryCause,
     has_guards: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
+    /// Shortest recovery time tm after a request's frame, in system clock cycles.
     own_recovery_min_cycles: Constant<Bits<13>>,
+    /// Flags that this core can find.
     possible: Constant<Bits<20>>,
     crc_wrong: Constant<Bits<20>>,
     parallel_wrong: Constant<Bits<20>>,
@@ -103,34 +105,61 @@ pub struct Verdict {
     seen: Reg<Bits<20>>,
     /// High for one cycle after `prove`, unless the frame was given up.
     prove_seen: Reg<Bit>,
+    /// `answer_taken`, one cycle later.
     taken_now: Reg<Bit>,
+    /// `give_up`, one cycle later; never in two cycles in a row.
     gave_up_now: Reg<Bit>,
+    /// High with `gave_up` if the result of the frame is already published.
     gave_up_late: Reg<Bit>,
+    /// `refuse`, one cycle later.
     refused: Reg<Bit>,
+    /// `announce`, one cycle later.
     announced: Reg<Bit>,
+    /// `normal_end`, one cycle later.
     ended: Reg<Bit>,
+    /// Set when a trigger is lost; cleared when a result has reported it.
     overrun: Reg<Bit>,
+    /// High if the last answer had a wrong CRC.
     was_bad: Reg<Bit>,
+    /// High for one cycle: the result of a trigger is published.
     publish_now: Reg<Bit>,
+    /// High for one cycle: the answer is good and has the right length.
     good_now: Reg<Bit>,
+    /// Set when a measuring frame has no result, so its short tm is not reported; cleared by the next answer.
     is_silent: Reg<Bit>,
+    /// Set when an answer is taken; cleared when its length is proven or the frame is given up.
     pending: Reg<Bit>,
+    /// High for one cycle: the published position is withdrawn.
     withdraw_now: Reg<Bit>,
+    /// High for one cycle: the published position is final.
     confirm_now: Reg<Bit>,
+    /// High for one cycle: a fault that was found after the result is reported.
     late_now: Reg<Bit>,
+    /// High for one cycle: a frame has ended in whatever way.
     over_now: Reg<Bit>,
     /// High from the end of a frame until its cause and flags are valid.
     telling: Reg<Bit>,
+    /// `lost`, one cycle later.
     lost_now: Reg<Bit>,
+    /// Flags of the last result or later fault; the primary cause is chosen from them.
     flags_now: Reg<Bits<20>>,
+    /// Flags to report: those that came with the strobe, of the answer, of lost triggers and of upsets.
     found_all: Signal<Local, Bits<20>>,
+    /// High if the received CRC does not fit the bits as they came, or as they are stored.
     crc_bad: Signal<Local, Bit>,
+    /// High if the answer has a wrong CRC or an alarm bit.
     answer_bad: Signal<Local, Bit>,
+    /// High for one cycle: the answer has the right length.
     proven: Signal<Local, Bit>,
+    /// High for one cycle: the result is published in the next cycle.
     publishes_now: Signal<Local, Bit>,
+    /// High with `proven` if a good answer came while settings of the frame changed.
     upset: Signal<Local, Bit>,
+    /// High with `proven` if the answer has measured the delay: the position itself comes with another frame.
     measured: Signal<Local, Bit>,
+    /// Shortest recovery time of this frame, in system clock cycles.
     recovery_min: Signal<Local, Bits<13>>,
+    /// High if a frame without a fault has ended before the shortest recovery time.
     early: Signal<Local, Bit>,
 }
 
