@@ -68,10 +68,15 @@ pub struct Crc5Word {
     pub covered: Signal<In, Bits<4>>,
     /// The CRC as it would be sent; bit 4 goes first.
     pub crc: Signal<Out, Bits<5>>,
+    /// For each bit of the CRC: the bits of the folded word that it depends on.
     mask: Vec<Constant<Bits<15>>>,
+    /// For each bit of the CRC: its value.
     weight: Vec<Constant<Bits<5>>>,
+    /// What preset and inversion add, for each number of covered bits modulo 15.
     constant: Vec<Constant<Bits<5>>>,
+    /// The word folded to 15 bits.
     folded: Signal<Local, Bits<15>>,
+    /// The CRC as its parts are added.
     sum: Signal<Local, Bits<5>>,
 }
 
@@ -189,17 +194,28 @@ pub struct Crc5Check {
     pub f2: Signal<In, Bit>,
     /// Word, error bits and received CRC fit each other.
     pub is_ok: Signal<Out, Bit>,
+    /// Power of 1/x for the next bit of the answer; 1 at the beginning of an answer.
     #[start(1.into())]
     power: Reg<Bits<5>>,
+    /// Sum of the received CRC bits, each times its power of 1/x.
     received: Reg<Bits<5>>,
+    /// For each bit of the sum: the bits of the folded word that it depends on.
     mask: Vec<Constant<Bits<15>>>,
+    /// For each bit of the sum: its value.
     weight: Vec<Constant<Bits<5>>>,
+    /// What the preset adds in front of 0, 1 or 2 error bits.
     term: Vec<Constant<Bits<5>>>,
+    /// What a set error bit adds that is next to the word.
     first: Constant<Bits<5>>,
+    /// What a set F1 adds if F2 follows.
     second: Constant<Bits<5>>,
+    /// 1/x modulo the generator.
     step: Constant<Bits<5>>,
+    /// Power of 1/x for the first bit of an answer.
     one: Constant<Bits<5>>,
+    /// The word folded to 15 bits.
     folded: Signal<Local, Bits<15>>,
+    /// Sum over preset, error bits and word; equal to `received` if all fit.
     sum: Signal<Local, Bits<5>>,
 }
 
@@ -288,9 +304,13 @@ pub struct Crc5Fixed<const N: usize> {
     pub word: Signal<In, Bits<N>>,
     /// The CRC as transmitted; bit 4 goes first.
     pub crc: Signal<Out, Bits<5>>,
+    /// For each bit of the CRC: the bits of the word that it depends on.
     mask: Vec<Constant<Bits<N>>>,
+    /// For each bit of the CRC: its value.
     weight: Vec<Constant<Bits<5>>>,
+    /// What preset and inversion add.
     constant: Constant<Bits<5>>,
+    /// The CRC as its parts are added.
     sum: Signal<Local, Bits<5>>,
 }
 
