@@ -68,11 +68,8 @@ pub struct Crc5Word {
     pub covered: Signal<In, Bits<4>>,
     /// The CRC as it would be sent; bit 4 goes first.
     pub crc: Signal<Out, Bits<5>>,
-    /// For each bit of the CRC: the bits of the folded word that it depends on.
     mask: Vec<Constant<Bits<15>>>,
-    /// For each bit of the CRC: its value.
     weight: Vec<Constant<Bits<5>>>,
-    /// What preset and inversion add, for each number of covered bits modulo 15.
     constant: Vec<Constant<Bits<5>>>,
     /// The word folded to 15 bits.
     folded: Signal<Local, Bits<15>>,
@@ -199,11 +196,8 @@ pub struct Crc5Check {
     power: Reg<Bits<5>>,
     /// Sum of the received CRC bits, each times its power of 1/x.
     received: Reg<Bits<5>>,
-    /// For each bit of the sum: the bits of the folded word that it depends on.
     mask: Vec<Constant<Bits<15>>>,
-    /// For each bit of the sum: its value.
     weight: Vec<Constant<Bits<5>>>,
-    /// What the preset adds in front of 0, 1 or 2 error bits.
     term: Vec<Constant<Bits<5>>>,
     /// What a set error bit adds that is next to the word.
     first: Constant<Bits<5>>,
@@ -304,9 +298,7 @@ pub struct Crc5Fixed<const N: usize> {
     pub word: Signal<In, Bits<N>>,
     /// The CRC as transmitted; bit 4 goes first.
     pub crc: Signal<Out, Bits<5>>,
-    /// For each bit of the CRC: the bits of the word that it depends on.
     mask: Vec<Constant<Bits<N>>>,
-    /// For each bit of the CRC: its value.
     weight: Vec<Constant<Bits<5>>>,
     /// What preset and inversion add.
     constant: Constant<Bits<5>>,

@@ -15,55 +15,30 @@ module s6_two_channel_crc5_word (
     // The CRC as it would be sent; bit 4 goes first.
     output wire   [4:0] crc
 );
-    // For each bit of the CRC: the bits of the folded word that it depends on.
     localparam  [14:0] MASK_0 = 15'h6e14;
-    // For each bit of the CRC: the bits of the folded word that it depends on.
     localparam  [14:0] MASK_1 = 15'h591e;
-    // For each bit of the CRC: the bits of the folded word that it depends on.
     localparam  [14:0] MASK_2 = 15'h2c8f;
-    // For each bit of the CRC: the bits of the folded word that it depends on.
     localparam  [14:0] MASK_3 = 15'h3853;
-    // For each bit of the CRC: the bits of the folded word that it depends on.
     localparam  [14:0] MASK_4 = 15'h5c29;
-    // For each bit of the CRC: its value.
     localparam   [4:0] WEIGHT_0 = 5'd1;
-    // For each bit of the CRC: its value.
     localparam   [4:0] WEIGHT_1 = 5'd2;
-    // For each bit of the CRC: its value.
     localparam   [4:0] WEIGHT_2 = 5'd4;
-    // For each bit of the CRC: its value.
     localparam   [4:0] WEIGHT_3 = 5'd8;
-    // For each bit of the CRC: its value.
     localparam   [4:0] WEIGHT_4 = 5'd16;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_0 = 5'd0;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_1 = 5'd10;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_2 = 5'd30;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_3 = 5'd29;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_4 = 5'd27;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_5 = 5'd23;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_6 = 5'd15;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_7 = 5'd20;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_8 = 5'd9;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_9 = 5'd24;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_10 = 5'd17;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_11 = 5'd3;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_12 = 5'd12;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_13 = 5'd18;
-    // What preset and inversion add, for each number of covered bits modulo 15.
     localparam   [4:0] CONSTANT_14 = 5'd5;
 
     // The word folded to 15 bits.

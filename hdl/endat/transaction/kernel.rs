@@ -280,8 +280,8 @@ impl Logic for Transaction {
             self.under_way.d.next = true;
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
-            self.acquiring.d.next = self.slow_now.q.val()
-                & !(self.has_alignment.val() & self.passes.q.val().any());
+            self.acquiring.d.next =
+                self.slow_now.q.val() & !(self.has_alignment.val() & self.passes.q.val().any());
             self.tail_sampled.d.next = false;
             self.late.d.next = false;
         }
