@@ -100,8 +100,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "F2 ignored",
         "verdict",
-        "bad_now = crc_bad | f1 | !f2;",
-        "bad_now = crc_bad | f1;",
+        "answer_bad = crc_bad | f1 | !f2;",
+        "answer_bad = crc_bad | f1;",
     ),
     mutation(
         "wrong cause for a missing start bit",
