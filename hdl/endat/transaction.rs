@@ -166,20 +166,20 @@ pub struct Transaction {
     /// High while CLOCK is held LOW: first low phase, wait for the start bit, or pause before the supplement.
     hold: Reg<Bit>,
     /// High for one cycle after `accept`: the frame begins.
-    start_now: Reg<Bit>,
+    starting: Reg<Bit>,
     /// `running`, one cycle later.
-    run_now: Reg<Bit>,
+    was_running: Reg<Bit>,
     /// High if the first low phase of a frame is longer than the others.
     extra: Reg<Bit>,
     /// High while CLOCK stays HIGH: no frame runs, or the frame is given up, or the running clock is left.
     #[start(true)]
-    stop_now: Reg<Bit>,
+    stopping: Reg<Bit>,
     /// Set when the delay is measured; cleared by an abort, two wrong CRCs in a row, `afresh` or a fixed delay.
     is_calibrated: Reg<Bit>,
     /// Set when a frame begins that finds the delay from its start edge; cleared in its tail or by the next frame.
     acquiring: Reg<Bit>,
     /// High if the frame runs at the calibration clock; set or cleared with `accept`, cleared after the tail.
-    slow_now: Reg<Bit>,
+    is_slow: Reg<Bit>,
     /// Frames of four that have measured the delay; 0 after an abort, two wrong CRCs in a row or `afresh`.
     passes: Reg<Bits<2>>,
     /// Set when the cell after the answer has been sampled in `Recovery`; cleared when a frame begins.
@@ -189,7 +189,7 @@ pub struct Transaction {
     /// Set when the supplement begins; cleared when the next frame begins.
     in_supplement: Reg<Bit>,
     /// High for one cycle: the supplement begins.
-    supplement_now: Reg<Bit>,
+    supplement_starts: Reg<Bit>,
     /// Set when the result of the frame is certain; a fault after that is a late one. Cleared with the frame.
     answered: Reg<Bit>,
     /// `hunting` in the cycle before.

@@ -211,13 +211,13 @@ module s6_two_channel_transaction (
     // High while CLOCK is held LOW: first low phase, wait for the start bit, or pause before the supplement.
     reg          hold; initial hold = 1'b0;
     // High for one cycle after accept: the frame begins.
-    reg          start_now; initial start_now = 1'b0;
+    reg          starting; initial starting = 1'b0;
     // running, one cycle later.
-    reg          run_now; initial run_now = 1'b0;
+    reg          was_running; initial was_running = 1'b0;
     // High if the first low phase of a frame is longer than the others.
     reg          extra; initial extra = 1'b0;
     // High while CLOCK stays HIGH: no frame runs, or the frame is given up, or the running clock is left.
-    reg          stop_now; initial stop_now = 1'b1;
+    reg          stopping; initial stopping = 1'b1;
     // Set when the delay is measured; cleared by an abort, two wrong CRCs in a row, afresh or a fixed delay.
     reg          is_calibrated; initial is_calibrated = 1'b0;
     reg          is_calibrated_next;
@@ -225,8 +225,8 @@ module s6_two_channel_transaction (
     reg          acquiring; initial acquiring = 1'b0;
     reg          acquiring_next;
     // High if the frame runs at the calibration clock; set or cleared with accept, cleared after the tail.
-    reg          slow_now; initial slow_now = 1'b0;
-    reg          slow_now_next;
+    reg          is_slow; initial is_slow = 1'b0;
+    reg          is_slow_next;
     // Set when the cell after the answer has been sampled in Recovery; cleared when a frame begins.
     reg          tail_sampled; initial tail_sampled = 1'b0;
     reg          tail_sampled_next;
@@ -234,8 +234,8 @@ module s6_two_channel_transaction (
     reg   [12:0] recovery; initial recovery = 13'd0;
     reg   [12:0] recovery_next;
     // High for one cycle: the supplement begins.
-    reg          supplement_now; initial supplement_now = 1'b0;
-    reg          supplement_now_next;
+    reg          supplement_starts; initial supplement_starts = 1'b0;
+    reg          supplement_starts_next;
     // Set when the result of the frame is certain; a fault after that is a late one. Cleared with the frame.
     reg          answered; initial answered = 1'b0;
     reg          answered_next;
@@ -267,7 +267,7 @@ module s6_two_channel_transaction (
     s6_two_channel_last_edge u_last_edge (
         .clock(clock),
         .reset(reset),
-        .start(start_now),
+        .start(starting),
         .no_pulse_left(all_sent),
         .last_sent(last_sent),
         .none_under_way(none_under_way),
@@ -333,7 +333,7 @@ module s6_two_channel_transaction (
     always @* begin
         phase_next = phase;
         acquiring_next = acquiring;
-        slow_now_next = slow_now;
+        is_slow_next = is_slow;
         tail_sampled_next = tail_sampled;
         recovery_next = recovery;
         answered_next = answered;
@@ -345,7 +345,7 @@ module s6_two_channel_transaction (
         plugged_next = 1'b0;
         refuse = 1'b0;
         normal_end = 1'b0;
-        supplement_now_next = 1'b0;
+        supplement_starts_next = 1'b0;
         limit = {4'd0, start_timeout_us};
         in_us = 1'b0;
         timer_clear = 1'b0;
@@ -444,7 +444,7 @@ module s6_two_channel_transaction (
                 if (timer_hit) begin
                     phase_next = PHASE_FRAME;
                     timer_clear = 1'b1;
-                    supplement_now_next = 1'b1;
+                    supplement_starts_next = 1'b1;
                     if (!all_ended) begin
                         found = UPSET;
                         give_up = 1'b1;
@@ -466,7 +466,7 @@ module s6_two_channel_transaction (
                     phase_next = PHASE_RECOVERY;
                     // From here on the full clock's times again: a short tm ends before half a slow period does.
                     acquiring_next = 1'b0;
-                    slow_now_next = 1'b0;
+                    is_slow_next = 1'b0;
                 end
             end
             PHASE_RECOVERY: begin
@@ -552,14 +552,14 @@ module s6_two_channel_transaction (
         end
         // What a frame begins with.
         if (accept) begin
-            slow_now_next = !known;
+            is_slow_next = !known;
         end
         // A cycle later: the first clock edge has not come by then.
-        if (start_now) begin
-            measuring_next = slow_now;
+        if (starting) begin
+            measuring_next = is_slow;
             under_way_next = 1'b1;
             answered_next = 1'b0;
-            acquiring_next = slow_now;
+            acquiring_next = is_slow;
             tail_sampled_next = 1'b0;
         end
         if (afresh) begin
@@ -575,19 +575,19 @@ module s6_two_channel_transaction (
     assign verdict_is_late = answered & !verdict_once_more;
     // Triggers that are lost, and the result that is owed.
     assign lost = trigger & ((!accept & !idle) | owing);
-    assign run = run_now;
-    assign start = start_now;
+    assign run = was_running;
+    assign start = starting;
     // Taking the start bit ends its cell; started comes when the comparison knows that.
     assign sent = last_edge_all_sent & started;
     assign hold_low = hold;
     assign drain = last_edge_stalled;
     // The high phase of the last pulse may last two cycles only.
-    assign stop = stop_now | sent;
+    assign stop = stopping | sent;
     // What is told.
     assign acquire = acquiring;
-    assign slow = slow_now;
+    assign slow = is_slow;
     assign busy = !idle | once_more;
-    assign start_supplement = supplement_now;
+    assign start_supplement = supplement_starts;
     assign is_at_rest = ((phase == PHASE_NOT_READY) | (phase == PHASE_READY)) & !verdict_is_telling;
     assign recovery_cycles = recovery;
 
@@ -602,16 +602,16 @@ module s6_two_channel_transaction (
             timer_hit <= 1'b0;
             timer_step <= 1'b0;
             hold <= 1'b0;
-            start_now <= 1'b0;
-            run_now <= 1'b0;
+            starting <= 1'b0;
+            was_running <= 1'b0;
             extra <= 1'b0;
-            stop_now <= 1'b1;
+            stopping <= 1'b1;
             is_calibrated <= 1'b0;
             acquiring <= 1'b0;
-            slow_now <= 1'b0;
+            is_slow <= 1'b0;
             tail_sampled <= 1'b0;
             recovery <= 13'd0;
-            supplement_now <= 1'b0;
+            supplement_starts <= 1'b0;
             answered <= 1'b0;
             was_hunting <= 1'b0;
             was_center <= 1'b0;
@@ -633,7 +633,7 @@ module s6_two_channel_transaction (
             if (is_back) begin
                 timer <= {15'd1, timer_step};
             end
-            if (start_now) begin
+            if (starting) begin
                 timer <= 16'd3;
             end
             timer_limit <= limit;
@@ -646,17 +646,17 @@ module s6_two_channel_transaction (
             end
             timer_step <= !in_us | tick_us;
             hold <= (phase == PHASE_FIRST_LOW) | last_edge_holds;
-            start_now <= accept;
+            starting <= accept;
             // The clock: when it runs, stands LOW, and ends.
-            run_now <= running;
+            was_running <= running;
             extra <= |first_low_extra_cycles;
-            stop_now <= !running | aborts;
+            stopping <= !running | aborts;
             is_calibrated <= is_calibrated_next;
             acquiring <= acquiring_next;
-            slow_now <= slow_now_next;
+            is_slow <= is_slow_next;
             tail_sampled <= tail_sampled_next;
             recovery <= recovery_next;
-            supplement_now <= supplement_now_next;
+            supplement_starts <= supplement_starts_next;
             answered <= answered_next;
             // Time-outs, each counted from the beginning of its span.
             was_hunting <= hunting;
@@ -743,12 +743,12 @@ module s6_two_channel_transaction (
         `FORMAL_LABEL(one_result_per_trigger_lemma_open) assert (f_owed == (owing | f_tells | publish));
     end
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-        `FORMAL_LABEL(starts_at_rest) assert (!start_now | (($past(phase) == PHASE_READY) & !$past(level)));
+        `FORMAL_LABEL(starts_at_rest) assert (!starting | (($past(phase) == PHASE_READY) & !$past(level)));
     end
     always @* begin
         `FORMAL_LABEL(low_for_tr) assert ((phase != PHASE_READY) | (f_low_cycles >= READY_LOW_CYCLES));
         `FORMAL_LABEL(low_for_tr_lemma_timer) assert ((phase != PHASE_NOT_READY) | cleared | (timer < f_low_cycles) | (&f_low_cycles));
-        `FORMAL_LABEL(low_for_tr_lemma_start) assert (!start_now | (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_ABORT));
+        `FORMAL_LABEL(low_for_tr_lemma_start) assert (!starting | (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_ABORT));
         `FORMAL_LABEL(low_for_tr_lemma_back) assert (!is_back | (phase == PHASE_RECOVERY) | (phase == PHASE_ABORT));
         `FORMAL_LABEL(low_for_tr_lemma_limit) assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES - 16'd1));
         `FORMAL_LABEL(low_for_tr_lemma_hit) assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
@@ -779,7 +779,7 @@ module s6_two_channel_transaction (
     // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
     wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
     wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
-    wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !start_now;
+    wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !starting;
     always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
         `FORMAL_LABEL(forward_only) assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
         if ($past(aborts)) `FORMAL_LABEL(forward_only_abort) assert (phase == PHASE_ABORT);

@@ -55,7 +55,7 @@ pub const MUTATIONS: &[(Mutation, &str)] = &[
     (mutation("abort too short", "transaction", "limit = ABORT_US;", "limit = PROBE_US;"), "abort_pause"),
     (mutation("ready too early", "transaction", "limit = READY_LOW_CYCLES;", "limit = 16'd2;"), "low_for_tr"),
     (mutation("ready while DATA moves", "transaction", "timer_clear = level;", "timer_clear = 1'b0;"), "low_for_tr"),
-    (mutation("a frame without rest", "transaction", "start_now <= accept;", "start_now <= accept | (trigger & run);"), "starts_at_rest"),
+    (mutation("a frame without rest", "transaction", "starting <= accept;", "starting <= accept | (trigger & run);"), "starts_at_rest"),
     (mutation("abort forgotten", "transaction", "phase_next = PHASE_ABORT;\n            timer_clear = 1'b1;\n            accept = 1'b0;", "timer_clear = 1'b1;\n            accept = 1'b0;"), "forward_only"),
     (mutation("back to the frame", "transaction", "phase_next = PHASE_RECOVERY;", "phase_next = PHASE_FIRST_LOW;"), "forward_only"),
     (mutation("a timer that never hits", "transaction", "timer_hit <= (timer >= timer_limit) & !cleared;", "timer_hit <= 1'b0;"), "phases_are_timed"),
