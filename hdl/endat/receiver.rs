@@ -124,7 +124,7 @@ pub struct Receiver {
     /// High if the last bit has been sampled and the word is not aligned yet (double edge only).
     waiting: Reg<Bit>,
     /// High for one cycle: an answer or a block of additional data is complete.
-    done_now: Reg<Bit>,
+    is_complete: Reg<Bit>,
     /// High if the counts of cells and pulses agree that this cell is the last one.
     used: Reg<Bit>,
     /// High if the counts of cells and pulses agree that no cell is left.
@@ -135,16 +135,16 @@ pub struct Receiver {
     stored_fits: Reg<Bit>,
     /// High for one cycle after a start bit whose edge is outside the window.
     refused: Reg<Bit>,
-    /// High for one cycle after the sample of a covered bit: `bit_now` is shifted in.
-    shift_now: Reg<Bit>,
+    /// High for one cycle after the sample of a covered bit: `bit_held` is shifted in.
+    shifting: Reg<Bit>,
     /// `level` in the cycle before.
-    bit_now: Reg<Bit>,
+    bit_held: Reg<Bit>,
     /// High for one cycle after the last bit of the payload has been sampled.
     last_payload: Reg<Bit>,
     /// High while `field` is `Start`; one cycle late.
-    hunting_now: Reg<Bit>,
+    is_hunting: Reg<Bit>,
     /// High while `field` is neither `Skip` nor `Start`; one cycle late.
-    started_now: Reg<Bit>,
+    has_started: Reg<Bit>,
     /// Rounds of 15 cells that are skipped after the present one.
     skip_rounds: Reg<Bits<2>>,
     /// Blocks of additional data whose separator has not come yet.
