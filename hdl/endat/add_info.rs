@@ -67,21 +67,37 @@ pub struct AddInfo {
     pub infos: Signal<Out, Bits<2>>,
     /// Strobe: in the first part of a long cell, where a short recovery time is not over yet.
     pub look: Signal<Out, Bit>,
+    /// Additional data that follow each position: bit 0 info 1, bit 1 info 2.
     selected: Reg<Bits<2>>,
+    /// Last block of info 1.
     first: Reg<Bits<24>>,
+    /// Last block of info 2.
     second: Reg<Bits<24>>,
+    /// Received CRC of info 1 in this frame; 0 until it comes.
     first_crc: Reg<Bits<5>>,
+    /// Received CRC of info 2 in this frame; 0 until it comes.
     second_crc: Reg<Bits<5>>,
+    /// Blocks that have come in this frame: bit 0 info 1, bit 1 info 2.
     seen: Reg<Bits<2>>,
+    /// Blocks of this frame whose CRC is right: bit 0 info 1, bit 1 info 2.
     right: Reg<Bits<2>>,
+    /// `answer_done`, one cycle later.
     answered: Reg<Bit>,
+    /// Set if the CRC of the answer is right; cleared when the frame ends or the next one begins.
     trusted: Reg<Bit>,
+    /// Cycles until `look`; loaded with `center`, 0 after it and after a sample.
     remaining: Reg<Bits<8>>,
+    /// High for one cycle: a short recovery time is not over yet.
     look_now: Reg<Bit>,
+    /// From the edge behind an answer to `look`, in system clock cycles.
     separator_cycles: Constant<Bits<8>>,
+    /// High if the block that comes is info 2.
     is_second: Signal<Local, Bit>,
+    /// High with `over` if the supplement was sent.
     is_sent: Signal<Local, Bit>,
+    /// High if the supplement selects or deselects additional data.
     is_selection: Signal<Local, Bit>,
+    /// High if the supplement deselects them.
     is_off: Signal<Local, Bit>,
 }
 

@@ -129,47 +129,81 @@ pub struct Channel {
     wanted_shape: CommandShape,
     add_info: AddInfo,
     settings: Vec<FrameSettings>,
+    /// EnDat clock, for the pin.
     #[start(true)]
     clk_pin: Reg<Bit>,
+    /// Level for the data line, for the pin.
     data_pin: Reg<Bit>,
+    /// Driver enable, for the pin.
     oe_pin: Reg<Bit>,
     second: Vec<SecondReceiver>,
+    /// High from a request with a frame of its own until that frame begins or the request is cancelled.
     own_asked: Vec<ProtectedBit>,
+    /// High from a request that rides until its frame begins or the request is cancelled.
     ride_asked: Vec<ProtectedBit>,
+    /// High if a request waits for a frame of its own.
     own_wanted: Signal<Local, Bit>,
+    /// High if a request waits for the next triggered frame.
     ride_wanted: Signal<Local, Bit>,
+    /// Mode command for triggered frames.
     command_set: Signal<Local, Bits<6>>,
+    /// Position width of the frame.
     width_set: Signal<Local, Bits<6>>,
+    /// Length of the input filter in the frame, in system clock cycles.
     filter_set: Signal<Local, Bits<4>>,
+    /// The input filter is half a cycle longer in the frame.
     filter_half_set: Signal<Local, Bit>,
+    /// Start window of the frame, in system clock cycles.
     window_set: Signal<Local, Bits<6>>,
     _guards: usize,
     _requests: usize,
     _seconds: usize,
+    /// Mode command of the frame; follows settings and request between two frames.
     frame_command: Reg<Bits<6>>,
+    /// Position width of the frame; follows the settings between two frames.
     frame_width: Reg<Bits<6>>,
+    /// EnDat clock period of the frame, in system clock cycles; follows the settings between two frames.
     frame_period: Reg<Bits<11>>,
+    /// High if the frame is a request's own; chosen between two frames.
     frame_own: Reg<Bit>,
+    /// High if a request rides on the frame; chosen between two frames.
     frame_ride: Reg<Bit>,
+    /// High for one cycle after a block of additional data is complete.
     info_taken: Reg<Bit>,
+    /// High for one cycle after the answer to a request with a frame of its own is complete.
     reply_taken: Reg<Bit>,
+    /// Payload of the last answer to a request with a frame of its own.
     reply_word: Reg<Bits<48>>,
+    /// High if the CRC of that answer is right; cleared when a frame begins.
     reply_right: Reg<Bit>,
+    /// High if that answer is a parameter, which arrived MSB first.
     reply_has_parameter: Reg<Bit>,
     has_guards: Constant<Bit>,
     has_requests: Constant<Bit>,
     has_double: Constant<Bit>,
+    /// 1 if a clock period must have at least four system clock cycles.
     needs_four: Constant<Bit>,
+    /// Value of `phase_mode` for a fixed delay.
     fixed_mode: Constant<Bits<2>>,
+    /// Bits of a parameter.
     parameter_bits: Constant<Bits<6>>,
+    /// Bits of the test values.
     test_value_bits: Constant<Bits<6>>,
+    /// Mode command of the frame.
     command_now: Signal<Local, Bits<6>>,
+    /// Bits of the payload of the answer.
     payload_bits: Signal<Local, Bits<6>>,
+    /// Payload of an answer that arrived MSB first.
     word: Signal<Local, Bits<24>>,
+    /// Last answer to a request, if it arrived MSB first.
     turned: Signal<Local, Bits<24>>,
+    /// High if the CRC fits the bits as they came and as they are stored.
     crc_ok: Signal<Local, Bit>,
+    /// Faults that a test forces upon the frame: F1, F2, CRC, second receiver.
     forced_now: Signal<Local, Bits<4>>,
+    /// EnDat clock period of the frame, in system clock cycles.
     period: Signal<Local, Bits<11>>,
+    /// EnDat clock period of a frame that measures the delay, in system clock cycles.
     calibration_period_cycles: Constant<Bits<11>>,
 }
 

@@ -42,11 +42,16 @@ pub struct ClockGen {
     /// High in the last cycle before a falling edge.
     pub fall: Signal<Out, Bit>,
     half: HalfPeriod,
+    /// Level of the EnDat clock; set with a rising edge, cleared with the start or a falling edge.
     #[start(true)]
     level: Reg<Bit>,
+    /// High in the first cycle after a rising edge.
     risen: Reg<Bit>,
+    /// High in the last cycle before a rising edge.
     rise_now: Signal<Local, Bit>,
+    /// High in the last cycle before a falling edge, but for the first one.
     fall_now: Signal<Local, Bit>,
+    /// High while a low phase is held.
     held: Signal<Local, Bit>,
 }
 

@@ -48,12 +48,19 @@ pub struct CommandSender {
     /// Driver enable.
     pub oe: Signal<Out, Bit>,
     has_all: Constant<Bit>,
+    /// Bits of a parameter.
     parameter_bits: Constant<Bits<5>>,
+    /// Cells left of the mode command, or of the zeros and start bit of a supplement; counts down to 0.
     cells_left: Reg<Bits<4>>,
+    /// Bits left of the parameter, with the one on the line; 0 if none is sent.
     bits_left: Reg<Bits<5>>,
+    /// Set when a supplement begins; cleared when a frame begins.
     in_supplement: Reg<Bit>,
+    /// Levels of these cells; `cell_now` selects the one on the line.
     cells: Signal<Local, Bits<8>>,
+    /// `cells_left`, modulo 8.
     cell_now: Signal<Local, Bits<3>>,
+    /// Levels of the parameter; `bits_left` selects the one on the line.
     bits: Signal<Local, Bits<32>>,
 }
 

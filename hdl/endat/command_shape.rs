@@ -33,10 +33,15 @@ pub struct CommandShape {
     /// The watchdog times its frame: not 101010, 100011 and 011100, as ArtInChip's ENDAT-IF.
     pub is_watched: Signal<Out, Bit>,
     has_all: Constant<Bit>,
+    /// Upper three bits of the command.
     left: Signal<Local, Bits<3>>,
+    /// Lower three bits of the command.
     right: Signal<Local, Bits<3>>,
+    /// Both halves of the command are the same.
     is_same: Signal<Local, Bit>,
+    /// The lower half is the complement of the upper one.
     is_complement: Signal<Local, Bit>,
+    /// The upper half is 010.
     is_two: Signal<Local, Bit>,
 }
 

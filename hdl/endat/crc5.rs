@@ -71,7 +71,9 @@ pub struct Crc5Word {
     mask: Vec<Constant<Bits<15>>>,
     weight: Vec<Constant<Bits<5>>>,
     constant: Vec<Constant<Bits<5>>>,
+    /// The word folded to 15 bits.
     folded: Signal<Local, Bits<15>>,
+    /// The CRC as its parts are added.
     sum: Signal<Local, Bits<5>>,
 }
 
@@ -189,17 +191,25 @@ pub struct Crc5Check {
     pub f2: Signal<In, Bit>,
     /// Word, error bits and received CRC fit each other.
     pub is_ok: Signal<Out, Bit>,
+    /// Power of 1/x for the next bit of the answer; 1 at the beginning of an answer.
     #[start(1.into())]
     power: Reg<Bits<5>>,
+    /// Sum of the received CRC bits, each times its power of 1/x.
     received: Reg<Bits<5>>,
     mask: Vec<Constant<Bits<15>>>,
     weight: Vec<Constant<Bits<5>>>,
     term: Vec<Constant<Bits<5>>>,
+    /// What a set error bit adds that is next to the word.
     first: Constant<Bits<5>>,
+    /// What a set F1 adds if F2 follows.
     second: Constant<Bits<5>>,
+    /// 1/x modulo the generator.
     step: Constant<Bits<5>>,
+    /// Power of 1/x for the first bit of an answer.
     one: Constant<Bits<5>>,
+    /// The word folded to 15 bits.
     folded: Signal<Local, Bits<15>>,
+    /// Sum over preset, error bits and word; equal to `received` if all fit.
     sum: Signal<Local, Bits<5>>,
 }
 
@@ -290,7 +300,9 @@ pub struct Crc5Fixed<const N: usize> {
     pub crc: Signal<Out, Bits<5>>,
     mask: Vec<Constant<Bits<N>>>,
     weight: Vec<Constant<Bits<5>>>,
+    /// What preset and inversion add.
     constant: Constant<Bits<5>>,
+    /// The CRC as its parts are added.
     sum: Signal<Local, Bits<5>>,
 }
 

@@ -53,18 +53,31 @@ pub struct FrameSettings {
     pub limits: FrameLimitsOut,
     /// Command or width are not what they were when the frame began.
     pub is_upset: Signal<Out, Bit>,
+    /// EnDat clock period; follows the input between two frames, as all settings do here.
     period_held: Reg<Bits<11>>,
+    /// How much longer the first low phase is, in system clock cycles.
     first_low_extra_held: Reg<Bits<11>>,
+    /// Mode command of a triggered frame.
     command_held: Reg<Bits<6>>,
+    /// Position width, in bits.
     position_held: Reg<Bits<6>>,
+    /// Length of the input filter, in system clock cycles.
     filter_held: Reg<Bits<4>>,
+    /// Start window, in system clock cycles.
     start_window_held: Reg<Bits<6>>,
+    /// Longest wait for the start bit, in microseconds.
     start_timeout_held: Reg<Bits<12>>,
+    /// Longest recovery time, in system clock cycles.
     recovery_limit_held: Reg<Bits<13>>,
+    /// Shortest recovery time, in system clock cycles.
     recovery_min_held: Reg<Bits<13>>,
+    /// Longest time of a frame, in microseconds; 0 = not watched.
     watchdog_held: Reg<Bits<12>>,
+    /// The input filter is half a cycle longer.
     filter_half_held: Reg<Bit>,
+    /// Parity of command and width when the frame began.
     parity: Reg<Bit>,
+    /// Parity of command and width.
     parity_now: Signal<Local, Bit>,
 }
 

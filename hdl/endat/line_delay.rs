@@ -15,12 +15,14 @@
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, `endat_main.asm`.
 
+mod kernel;
+
 use crate::endat::features::Features;
 use crate::endat::phase_tracker::PhaseTracker;
 use crate::endat::ports::{CellControlIn, CellsOut};
 use crate::half_period::HalfPeriod;
 use rtl_design::reg::Reg;
-use rtl_design::{kernel, Block};
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 /// Sample strobes and start edge window of one channel.
@@ -79,61 +81,109 @@ pub struct LineDelay {
     /// Places from the tracked one to this edge, less one, in two's complement.
     pub offset: Signal<Out, Bits<8>>,
     half: HalfPeriod,
+    /// Tracked propagation delay tD, in system clock cycles; 0 if a phase tracker has it.
     delay: Reg<Bits<11>>,
+    /// Cycles since the first rising edge of the burst, plus 2; since the last one if the delay is measured.
     since_rise: Reg<Bits<11>>,
+    /// Set with the first rising edge of a burst; cleared when the cells of the burst have ended.
     timing_armed: Reg<Bit>,
+    /// High for one cycle when the tracked delay has passed since the first rising edge.
     delay_over: Reg<Bit>,
+    /// High from the expected data edge of the first cell until the cells of the burst have ended.
     cells_run: Reg<Bit>,
+    /// High from the sample of a cell to the expected data edge of the next one.
     second_half: Reg<Bit>,
+    /// High for one cycle where the data line is sampled, half a period after `center_strobe`.
     sample_strobe: Reg<Bit>,
+    /// High for one cycle at the expected place of a data edge.
     center_strobe: Reg<Bit>,
+    /// Set at the expected place of a data edge; cleared with the sample.
     center_seen: Reg<Bit>,
+    /// High if no data edge counts: no cells run, or the start bit of a measuring frame cannot come yet.
     not_yet: Reg<Bit>,
+    /// `over`, one cycle later: the cells stop.
     afresh: Reg<Bit>,
+    /// High for one cycle after a good start bit whose edge was not at its expected place.
     follow_now: Reg<Bit>,
+    /// Set with the first data edge of a cell; cleared with its sample.
     edge_seen: Reg<Bit>,
+    /// High if that edge came after its expected place.
     edge_late: Reg<Bit>,
+    /// Cycles between the data edge of a cell and its expected place; one less if it is late.
     edge_error: Reg<Bits<6>>,
+    /// Set when that distance exceeds the start window; cleared with the sample.
     edge_outside: Reg<Bit>,
-    /// A clock pulse whose cell counts left the receiver in the cycle before.
+    /// High for one cycle after a clock pulse has been sent whose cell counts.
     pulse_leaves: Reg<Bit>,
+    /// Set if the start edge of a running clock was early: the next half of a cell is one cycle shorter.
     shorten: Reg<Bit>,
+    /// Set if the start edge of a running clock was late: the next half of a cell is one cycle longer.
     lengthen: Reg<Bit>,
+    /// Parity of the tracked delay when it was set (upset guards only).
     parity: Reg<Bit>,
+    /// High in the first cycle of a new tracked delay: its parity is stored.
     moved: Reg<Bit>,
+    /// Set when the parity of the tracked delay changes by itself; cleared when the delay is measured or fixed.
     wrong: Reg<Bit>,
+    /// Parity of the tracked delay.
     parity_now: Signal<Local, Bit>,
+    /// High for one cycle: the delay counts from this rising edge of the clock.
     first_rise: Signal<Local, Bit>,
+    /// High for one cycle: the start edge of a frame that measures the delay.
     acquired: Signal<Local, Bit>,
+    /// High for one cycle at the expected, or measured, data edge of the first cell.
     first_center: Signal<Local, Bit>,
+    /// High for one cycle at the middle of the place of a data edge.
     center_now: Signal<Local, Bit>,
+    /// High for one cycle: the data line is sampled.
     sample_now: Signal<Local, Bit>,
+    /// Change of the tracked delay, in cycles: 1 or -1.
     step: Signal<Local, Bits<11>>,
+    /// High if the data edge of the cell has come.
     edge_now: Signal<Local, Bit>,
+    /// High if no frame runs, or if the clock waits and the cells of all its pulses have ended.
     over: Signal<Local, Bit>,
     tracker: Vec<PhaseTracker>,
+    /// Places from the expected place to the data edge of the last cell, less one, in two's complement.
     offset_now: Reg<Bits<8>>,
+    /// High for one cycle after the sample of a cell whose data edge counts.
     measured_now: Reg<Bit>,
+    /// High if the half of a cell began half a cycle later than others (double edge only).
     second: Reg<Bit>,
+    /// High if the data edge of the cell came half a cycle later than others (double edge only).
     edge_place: Reg<Bit>,
     has_guards: Constant<Bit>,
     has_alignment: Constant<Bit>,
     has_double: Constant<Bit>,
     frame_mode: Constant<Bits<2>>,
     fixed_mode: Constant<Bits<2>>,
+    /// Tracked delay in places: system clock cycles, or half ones with the double edge.
     places: Signal<Local, Bits<12>>,
+    /// Tracked delay, in system clock cycles.
     delay_now: Signal<Local, Bits<11>>,
+    /// High if the start bit of each frame sets the phase.
     is_frame: Signal<Local, Bit>,
+    /// High for one cycle: the start edge sets the middle of its cell.
     snap: Signal<Local, Bit>,
+    /// High if a data edge in this cycle belongs to the cell after this sample.
     next_cell: Signal<Local, Bit>,
+    /// High if the data edge of the cell is after its expected place.
     late_now: Signal<Local, Bit>,
+    /// High if the data edge of the cell comes half a cycle later than others.
     place_now: Signal<Local, Bit>,
+    /// High if the expected place is half a cycle later than others.
     center_place: Signal<Local, Bit>,
+    /// Places between the data edge and its expected place; one less if it is late.
     distance: Signal<Local, Bits<8>>,
+    /// High with a sample if the data edge of the cell counts.
     good_edge: Signal<Local, Bit>,
+    /// High while the phase is not known yet: every data edge counts.
     is_open: Signal<Local, Bit>,
+    /// High if the first cell begins a cycle later: the period is odd and the delay past half a cycle.
     is_later: Signal<Local, Bit>,
+    /// High for one cycle: the first cell begins.
     due: Signal<Local, Bit>,
+    /// `delay_over`, one cycle later.
     was_over: Reg<Bit>,
     _trackers: usize,
 }
@@ -154,307 +204,5 @@ impl LineDelay {
             fixed_mode: Constant::new(mode::FIXED.into()),
             _trackers: trackers,
         })
-    }
-}
-
-#[kernel]
-impl Logic for LineDelay {
-    fn update(&mut self) {
-        clock!(self, clock, half);
-        self.half.reset.next = self.reset.val();
-        self.time_delay();
-        self.place_cells();
-        self.run_halves();
-        self.measure_edge();
-        self.follow();
-        self.end_burst();
-        self.tell();
-    }
-
-    /// tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
-    fn time_delay(&mut self) {
-        self.first_rise.next = self.rise.val() & (self.acquire.val() | !self.timing_armed.q.val());
-        self.since_rise.d.next = self.since_rise.q.val() + 1;
-        if self.first_rise.val() {
-            self.timing_armed.d.next = true;
-            // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles earlier.
-            self.since_rise.d.next = 3.into();
-            if self.acquire.val() {
-                self.since_rise.d.next = 1.into();
-            }
-        }
-        self.places.next = bit_cast::<12, 11>(self.delay.q.val());
-        for i in 0..self._trackers {
-            self.places.next = self.tracker[i].delay_places.val();
-        }
-        self.delay_now.next = self.places.val().get_bits::<11>(0);
-        if self.has_double.val() {
-            self.delay_now.next = self.places.val().get_bits::<11>(1);
-        }
-        // The delay stays from frame to frame: a guard looks at it.
-        self.moved.d.next = self.follow_now.q.val() | self.acquired.val();
-        for i in 0..self._trackers {
-            self.moved.d.next = self.tracker[i].moves.val();
-        }
-        self.parity_now.next = self.places.val().xor();
-        if self.moved.q.val() {
-            self.parity.d.next = self.parity_now.val();
-        } else {
-            if self.has_guards.val() & (self.parity_now.val() ^ self.parity.q.val()) {
-                self.wrong.d.next = true;
-            }
-        }
-        // One from a register is not measured.
-        if self.acquired.val()
-            | (self.has_alignment.val() & (self.mode.val() == self.fixed_mode.val()))
-        {
-            self.wrong.d.next = false;
-        }
-        self.is_upset.next = self.wrong.q.val();
-        self.delay_over.d.next =
-            self.timing_armed.q.val() & (self.since_rise.q.val() == self.delay_now.val());
-    }
-
-    /// Samples and middles of cells, from the first one on.
-    fn place_cells(&mut self) {
-        // The middle of a bit of an odd number of places lies on a place, that of others between two.
-        self.is_later.next = false;
-        for i in 0..self._trackers {
-            self.is_later.next = self.tracker[i].past_half.val()
-                & self.period_cycles.val().get_bit(0)
-                & !self.has_double.val();
-        }
-        self.was_over.d.next = self.delay_over.q.val() & self.has_alignment.val();
-        self.due.next = self.delay_over.q.val();
-        if self.is_later.val() {
-            self.due.next = self.was_over.q.val();
-        }
-
-        self.acquired.next = self.acquire.val()
-            & self.hunting.val()
-            & self.data_edge.val()
-            & !self.cells_run.q.val();
-        self.first_center.next =
-            self.acquired.val() | (self.due.val() & !self.cells_run.q.val() & !self.acquire.val());
-        // The half period timer runs one cycle ahead: its ticks are registered before they are used.
-        self.sample_strobe.d.next =
-            self.half.tick.val() & !self.second_half.q.val() & self.cells_run.q.val();
-        self.center_strobe.d.next = (self.half.tick.val() & self.second_half.q.val())
-            | (self.first_center.val() & !self.acquired.val());
-        // Phase from the start bit: its edge is the middle, wherever the tracked one is.
-        self.is_frame.next = self.has_alignment.val() & (self.mode.val() == self.frame_mode.val());
-        self.snap.next = self.is_frame.val()
-            & self.hunting.val()
-            & self.data_edge.val()
-            & !self.edge_seen.q.val()
-            & self.cells_run.q.val()
-            & !self.acquire.val();
-        // With two system clock cycles in a bit one cell more begins before a burst is over.
-        self.sample_now.next = self.sample_strobe.q.val()
-            & !self.snap.val()
-            & !(self.has_double.val() & self.afresh.q.val());
-        self.center_now.next = self.acquired.val() | self.center_strobe.q.val() | self.snap.val();
-    }
-
-    /// Half a cell after the other.
-    fn run_halves(&mut self) {
-        self.half.period_cycles.next = self.period_cycles.val();
-        self.half.second.next = self.second_half.q.val();
-        self.half.restart.next =
-            !self.cells_run.q.val() | self.control.last_cell.val() | self.snap.val();
-        self.half.began.next = self.acquired.val() | self.snap.val();
-        // An odd period has halves of a whole number of half cycles: every other one begins in the middle of a cycle.
-        if self.has_double.val() {
-            self.half.second.next = self.second.q.val();
-            if self.half.tick.val() & self.cells_run.q.val() {
-                self.second.d.next = self.second.q.val() ^ self.period_cycles.val().get_bit(0);
-            }
-            if self.first_center.val() {
-                self.second.d.next = self.places.val().get_bit(0);
-            }
-            if self.acquired.val() | self.snap.val() {
-                self.second.d.next = self.edge_second.val();
-            }
-        }
-        if self.half.tick.val() & self.cells_run.q.val() {
-            self.second_half.d.next = !self.second_half.q.val();
-        }
-        if self.first_center.val() | self.snap.val() {
-            self.cells_run.d.next = true;
-            self.second_half.d.next = false;
-        }
-        if self.snap.val() {
-            self.sample_strobe.d.next = false;
-            self.center_strobe.d.next = false;
-        }
-    }
-
-    /// The pulse of a cell, and how far its data edge is from the middle.
-    fn measure_edge(&mut self) {
-        // Of the edges before an acquired start bit that which launched it is the only one that counts.
-        self.pulse_leaves.d.next = self.acquired.val()
-            | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
-        self.cells.pulse.next = self.pulse_leaves.q.val();
-        // With two system clock cycles in a bit there is no time to register it.
-        if self.has_double.val() {
-            self.cells.pulse.next = self.acquired.val()
-                | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
-        }
-
-        // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
-        // is as good as one that is seen with it: the limits of the bit are as far from both.
-        if self.center_now.val() {
-            self.center_seen.d.next = true;
-        }
-        // An edge behind the sample of the same cycle belongs to the next cell.
-        self.next_cell.next = self.has_double.val()
-            & self.sample_now.val()
-            & self.edge_second.val()
-            & !self.second.q.val();
-        self.edge_now.next =
-            self.edge_seen.q.val() | (self.data_edge.val() & !self.next_cell.val());
-        self.late_now.next = self.edge_late.q.val();
-        self.place_now.next = self.edge_place.q.val();
-        if !self.edge_seen.q.val() {
-            self.late_now.next = self.center_seen.q.val();
-            self.place_now.next = self.edge_second.val();
-        }
-        if self.data_edge.val() {
-            self.edge_seen.d.next = true;
-            self.edge_late.d.next = self.late_now.val();
-            self.edge_place.d.next = self.place_now.val();
-            if self.next_cell.val() {
-                self.edge_late.d.next = false;
-                self.edge_place.d.next = true;
-            }
-        }
-        if (self.center_seen.q.val() & !self.edge_now.val())
-            | (self.edge_seen.q.val() & !self.center_seen.q.val())
-        {
-            self.edge_error.d.next = self.edge_error.q.val() + 1;
-            if self.edge_error.q.val() == self.start_window_cycles.val() {
-                self.edge_outside.d.next = true;
-            }
-        }
-        // The middle is put upon the edge; how early that is, the half under way tells.
-        if self.snap.val() & !self.center_seen.q.val() & !self.center_strobe.q.val() {
-            self.edge_error.d.next = self.half.left_cycles.val().get_bits::<6>(0);
-            if self.half.left_cycles.val() > bit_cast::<10, 6>(self.start_window_cycles.val()) {
-                self.edge_outside.d.next = true;
-            }
-        }
-    }
-
-    /// The tracked delay goes where the start edge was.
-    fn follow(&mut self) {
-        self.follow_now.d.next = self.follow.val() & self.edge_error.q.val().any();
-        self.half.shorten.next = self.shorten.q.val();
-        self.half.lengthen.next = self.lengthen.q.val();
-        if self.half.tick.val() {
-            self.shorten.d.next = false;
-            self.lengthen.d.next = false;
-        }
-        if self.follow_now.q.val() {
-            self.delay.d.next = self.delay.q.val() + self.step.val();
-            self.shorten.d.next = self.going_on.val() & !self.edge_late.q.val();
-            self.lengthen.d.next = self.going_on.val() & self.edge_late.q.val();
-        }
-        self.step.next = 0x7FF.into();
-        if self.edge_late.q.val() {
-            self.step.next = 1.into();
-        }
-        if self.acquired.val() {
-            self.delay.d.next = self.since_rise.q.val();
-        }
-        if self.has_alignment.val() {
-            self.delay.d.next = 0.into();
-        }
-
-        // What the cell's edge says of the phase. In mode `frame` only the start bit does.
-        self.center_place.next = false;
-        self.distance.next = bit_cast::<8, 6>(self.edge_error.q.val());
-        if self.has_double.val() {
-            self.center_place.next = self.second.q.val() ^ self.period_cycles.val().get_bit(0);
-            self.distance.next = (bit_cast::<8, 6>(self.edge_error.q.val()) << 1)
-                + bit_cast::<8, 1>(self.center_place.val().into())
-                - bit_cast::<8, 1>(self.place_now.val().into());
-            if self.late_now.val() {
-                self.distance.next = (bit_cast::<8, 6>(self.edge_error.q.val()) << 1)
-                    + bit_cast::<8, 1>(self.place_now.val().into())
-                    + bit_cast::<8, 1>((!self.center_place.val()).into());
-            }
-        }
-        // While the mean is still being looked for every edge counts.
-        self.is_open.next = self.has_alignment.val() & self.control.slow.val();
-        self.good_edge.next = self.has_alignment.val()
-            & self.sample_now.val()
-            & self.edge_now.val()
-            & (!self.edge_outside.q.val() | self.is_open.val())
-            & (self.follow.val() | (self.in_answer.val() & !self.is_frame.val()));
-        self.measured_now.d.next = self.good_edge.val();
-        self.offset_now.d.next = self.distance.val();
-        if !self.late_now.val() {
-            self.offset_now.d.next = !self.distance.val();
-        }
-        if !self.has_alignment.val() {
-            self.offset_now.d.next = 0.into();
-            self.edge_place.d.next = false;
-        }
-        for i in 0..self._trackers {
-            connect!(self.tracker[i] <= self; clock, reset, acquired);
-            self.tracker[i].measured_places.next = bit_cast::<12, 11>(self.since_rise.q.val());
-            if self.has_double.val() {
-                self.tracker[i].measured_places.next =
-                    (bit_cast::<12, 11>(self.since_rise.q.val()) << 1)
-                        | bit_cast::<12, 1>(self.edge_second.val().into());
-            }
-            connect!(self.tracker[i] <= self; starts = first_center, is_later);
-            self.tracker[i].edge_strobe.next = self.measured_now.q.val();
-            self.tracker[i].offset.next = self.offset_now.q.val();
-            self.tracker[i].acquire.next = self.acquire.val();
-            self.tracker[i].quick.next = self.control.slow.val() | self.is_frame.val();
-            self.tracker[i].is_fixed.next = self.mode.val() == self.fixed_mode.val();
-            self.tracker[i].fixed_delay.next = self.fixed_delay.val();
-        }
-    }
-
-    /// All cells of a burst have ended: the next rising edge begins a new one.
-    fn end_burst(&mut self) {
-        self.over.next =
-            !self.control.run.val() | (self.control.drain.val() & self.none_under_way.val());
-        self.afresh.d.next = self.over.val();
-        if self.afresh.q.val() {
-            self.cells_run.d.next = false;
-            self.second_half.d.next = false;
-            self.timing_armed.d.next = false;
-            self.delay_over.d.next = false;
-            self.was_over.d.next = false;
-            self.sample_strobe.d.next = false;
-            self.center_strobe.d.next = false;
-        }
-        self.not_yet.d.next = self.over.val() | (self.acquire.val() & !self.hunting.val());
-        if self.sample_now.val() | self.not_yet.q.val() {
-            self.center_seen.d.next = false;
-            self.edge_seen.d.next =
-                self.next_cell.val() & self.data_edge.val() & !self.not_yet.q.val();
-            self.edge_error.d.next = 0.into();
-            self.edge_outside.d.next = false;
-        }
-    }
-
-    /// Places of the cells, and what was measured.
-    fn tell(&mut self) {
-        self.cells.sample.next = self.sample_now.val();
-        self.center.next = self.center_now.val();
-        self.cells.edge_in_window.next =
-            self.edge_now.val() & (!self.edge_outside.q.val() | self.is_open.val());
-        self.sample_second.next = self.second.q.val();
-        self.delay_cycles.next = self.delay_now.val();
-        self.measured.next = self.measured_now.q.val();
-        self.offset.next = self.offset_now.q.val();
-        self.phase.next = 0.into();
-        for i in 0..self._trackers {
-            self.phase.next = self.tracker[i].phase.val();
-        }
     }
 }

@@ -46,10 +46,15 @@ pub struct LineHealth {
     pub is_open: Signal<Out, Bit>,
     /// DATA is HIGH whatever the receiver does.
     pub is_stuck: Signal<Out, Bit>,
+    /// Microseconds since the frame began.
     passed_us: Reg<Bits<12>>,
+    /// Set when the watchdog's time has passed; cleared when the frame ends or the next one begins.
     over: Reg<Bit>,
+    /// Set when DATA is HIGH; cleared when a frame begins.
     was_high: Reg<Bit>,
+    /// Set if DATA follows a probe, so nothing drives it; cleared when DATA has been LOW for tR.
     open: Reg<Bit>,
+    /// Set if DATA stays HIGH in a probe; cleared when DATA has been LOW for tR.
     stuck: Reg<Bit>,
 }
 

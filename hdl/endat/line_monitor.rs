@@ -80,56 +80,96 @@ pub struct LineMonitor {
     pub host_half: Signal<In, Bit>,
     /// What to write.
     pub host_data: Signal<In, Bits<16>>,
+    /// Source of the phase as the host has written it.
     #[given]
     wanted_mode: Reg<Bits<2>>,
+    /// Majority of three samples as the host has written it.
     #[given]
     wanted_majority: Reg<Bit>,
+    /// A bin of the histogram is two to this power places wide.
     bin_shift: Reg<Bits<2>>,
+    /// Fixed delay as the host has written it.
     #[given]
     wanted_delay: Reg<Bits<15>>,
+    /// Drift that raises the alarm, in sixteenths of a system clock cycle; 0 = none.
     #[given]
     drift_limit: Reg<Bits<12>>,
+    /// Offset that raises the alarm, in places; 0 = none.
     #[given]
     offset_limit: Reg<Bits<7>>,
+    /// Source of the phase in use; copied between two frames.
     #[given]
     mode: Reg<Bits<2>>,
+    /// Majority of three samples in use; copied between two frames.
     #[given]
     uses_majority: Reg<Bit>,
+    /// Fixed delay in use; copied between two frames.
     #[given]
     delay: Reg<Bits<15>>,
+    /// Word that the host has read.
     word: Reg<Bits<32>>,
+    /// Set when the host reads; cleared when the histogram is not being counted.
     read_wanted: Reg<Bit>,
+    /// High for one cycle: the host's word is that of the histogram.
     read_ram: Reg<Bit>,
+    /// Earliest edge of the frame; offset with its sign bit inverted, as in the other registers of edges.
     earliest: Reg<Bits<8>>,
+    /// Latest edge of the frame.
     latest: Reg<Bits<8>>,
+    /// First edge of the frame.
     start: Reg<Bits<8>>,
+    /// Set when a frame ends; cleared by its first edge.
     #[start(true)]
     is_first: Reg<Bit>,
+    /// Earliest edge of the last frame with any edge.
     told_earliest: Reg<Bits<8>>,
+    /// Latest edge of the last frame with any edge.
     told_latest: Reg<Bits<8>>,
+    /// First edge of the last frame with any edge.
     told_start: Reg<Bits<8>>,
+    /// Earliest edge of all frames since cleared by the host.
     worst_earliest: Reg<Bits<8>>,
+    /// Latest edge of all frames since cleared by the host.
     worst_latest: Reg<Bits<8>>,
+    /// Set when a frame with an edge ends; cleared by the host.
     has_worst: Reg<Bit>,
+    /// Tracked delay when it was measured, or when the host has set the reference.
     drift_reference: Reg<Bits<15>>,
+    /// `calibrated` in the cycle before.
     was_calibrated: Reg<Bit>,
+    /// Distance of the tracked delay from its reference, in sixteenths of a system clock cycle.
     drift: Reg<Bits<15>>,
+    /// Set when the drift exceeds its limit; cleared by the host.
     drift_alarm: Reg<Bit>,
+    /// Set when an offset exceeds its limit; cleared by the host.
     offset_alarm: Reg<Bit>,
+    /// Pulses that the filter has removed since cleared by the host.
     glitches: Reg<Bits<16>>,
+    /// Frames without a good position since cleared by the host.
     bad_frames: Reg<Bits<16>>,
+    /// Frames since cleared by the host.
     frames: Reg<Bits<32>>,
+    /// High for one cycle: the host clears what was measured.
     clear: Reg<Bit>,
+    /// High while the bins of the histogram are cleared, one a cycle.
     #[given]
     clearing: Reg<Bit>,
+    /// Bin of the histogram that is counted or cleared.
     bin: Reg<Bits<5>>,
+    /// Cycles until the bin is written back; 0 = none is counted.
     step: Reg<Bits<2>>,
     histogram: Vec<Memory<32, 5>>,
+    /// Word that the host accesses.
     at: Signal<Local, Bits<6>>,
+    /// Value of this word, but for the histogram.
     shown: Signal<Local, Bits<32>>,
+    /// Offset of the edge with its sign bit inverted: earlier is smaller.
     biased: Signal<Local, Bits<8>>,
+    /// Size of the offset in bins.
     scaled: Signal<Local, Bits<8>>,
+    /// Bin of this edge.
     next_bin: Signal<Local, Bits<5>>,
+    /// Size of the offset in places; one less if it is negative.
     size: Signal<Local, Bits<8>>,
     has_margin: Constant<Bit>,
     _histograms: usize,

@@ -55,17 +55,28 @@ pub struct PhaseTracker {
     pub moves: Signal<Out, Bit>,
     /// Tracked delay, in sixteenths of a system clock cycle.
     pub phase: Signal<Out, Bits<15>>,
+    /// Tracked phase in places, 12 bits before the point and 12 after it.
     place: Reg<Bits<24>>,
+    /// High for one cycle: the phase moves towards the edge of the last cell.
     take: Reg<Bit>,
+    /// `offset`, one cycle later.
     by: Reg<Bits<8>>,
+    /// Place from which the cells of the frame are timed, modulo 32.
     middle: Reg<Bits<5>>,
     has_double: Constant<Bit>,
+    /// Upper bits of a negative distance.
     negative: Constant<Bits<32>>,
+    /// Upper bit of a negative step.
     top: Constant<Bits<24>>,
+    /// Distance from the phase to the edge, with 12 bits after the point; one less in the last place.
     innovation: Signal<Local, Bits<32>>,
+    /// Part of this distance by which the phase moves, less one.
     step: Signal<Local, Bits<24>>,
+    /// Places from the phase to the middle of the cells, modulo 32.
     moved: Signal<Local, Bits<5>>,
+    /// The same number with its sign extended.
     moved_by: Signal<Local, Bits<8>>,
+    /// Places from the phase, rounded down, to the edge, less one.
     distance: Signal<Local, Bits<8>>,
 }
 

@@ -87,86 +87,156 @@ pub struct Receiver {
     crc: Crc5Word,
     #[start]
     check: Crc5Check,
+    /// Part of the answer to which the next sample belongs.
     #[start(Field::Done)]
     field: Reg<Field>,
+    /// Cells until the end of the frame; those that wait for the start bit are not counted.
     left: Reg<Bits<7>>,
     /// The cell that comes is the last one of the payload.
     payload_ends: Reg<Bit>,
     /// The cell that comes is the last one of the CRC.
     crc_ends: Reg<Bit>,
+    /// Clock pulses that the frame still needs.
     to_send: Reg<Bits<7>>,
+    /// Pulses on the cable, modulo 8: those that are sent and whose cell has not ended (upset guards only).
     under_way: Reg<Bits<3>>,
+    /// Bits of the answer as they come in; the payload from bit 0 on when they are aligned.
     word: Reg<Bits<50>>,
+    /// Cells that are skipped, then bits that are shifted in, modulo 15.
     covered: Reg<Bits<4>>,
+    /// Error bit F1 of the answer.
     f1_bit: Reg<Bit>,
+    /// Error bit F2 of the answer; high in frames without it.
     #[start(true)]
     f2_bit: Reg<Bit>,
+    /// CRC as received; bit 4 came first.
     crc_bits: Reg<Bits<5>>,
+    /// CRC of the bits as they came; valid one cycle after `take_crc`.
     crc_calc: Reg<Bits<5>>,
+    /// High for one cycle when the last bit of the payload is in the word: its CRC is stored.
     take_crc: Reg<Bit>,
+    /// High while the word is shifted down to bit 0.
     align: Reg<Bit>,
+    /// High in the first cycle of the alignment, which never ends it.
     align_first: Reg<Bit>,
+    /// High for one cycle after the last bit of an answer or block has been sampled.
     last_taken: Reg<Bit>,
+    /// High if the last bit has been sampled and the word is not aligned yet (double edge only).
     waiting: Reg<Bit>,
-    done_now: Reg<Bit>,
+    /// High for one cycle: an answer or a block of additional data is complete.
+    is_complete: Reg<Bit>,
+    /// High if the counts of cells and pulses agree that this cell is the last one.
     used: Reg<Bit>,
+    /// High if the counts of cells and pulses agree that no cell is left.
     ended: Reg<Bit>,
+    /// High if the received CRC is that of the bits as they came.
     crc_equal: Reg<Bit>,
+    /// High if the received CRC is that of the word as it is stored (upset guards only).
     stored_fits: Reg<Bit>,
+    /// High for one cycle after a start bit whose edge is outside the window.
     refused: Reg<Bit>,
-    shift_now: Reg<Bit>,
-    bit_now: Reg<Bit>,
+    /// High for one cycle after the sample of a covered bit: `bit_held` is shifted in.
+    shifting: Reg<Bit>,
+    /// `level` in the cycle before.
+    bit_held: Reg<Bit>,
+    /// High for one cycle after the last bit of the payload has been sampled.
     last_payload: Reg<Bit>,
-    hunting_now: Reg<Bit>,
-    started_now: Reg<Bit>,
+    /// High while `field` is `Start`; one cycle late.
+    is_hunting: Reg<Bit>,
+    /// High while `field` is neither `Skip` nor `Start`; one cycle late.
+    has_started: Reg<Bit>,
+    /// Rounds of 15 cells that are skipped after the present one.
     skip_rounds: Reg<Bits<2>>,
+    /// Blocks of additional data whose separator has not come yet.
     infos_left: Reg<Bits<2>>,
+    /// Set when a block of additional data begins; cleared when a frame or the next answer begins.
     in_info: Reg<Bit>,
+    /// High for one cycle: the line is HIGH where a block of additional data should begin.
     missing: Reg<Bit>,
+    /// High for one cycle after the last cell of the supplement.
     supplement_over: Reg<Bit>,
+    /// High for one cycle: the cell after the CRC is LOW while the clock goes on.
     low_gap: Reg<Bit>,
+    /// High for one cycle: the second cell after the CRC is HIGH while the clock goes on.
     high_gap: Reg<Bit>,
+    /// High for one cycle: the cell after the CRC is HIGH while the clock goes on, as it should be.
     good_gap: Reg<Bit>,
+    /// High for one cycle after a LOW separator: a block of additional data begins.
     low_separator: Reg<Bit>,
+    /// `low_separator`, one cycle later.
     separator_then: Reg<Bit>,
+    /// `low_separator`, two cycles later: the word is cleared for the block.
     new_block: Reg<Bit>,
+    /// The first seven samples from the first HIGH on, or as many as have come.
     heard: Reg<Bits<7>>,
+    /// Set when `heard` is the mode command, then LOW; cleared when a frame or the next answer begins.
     echo: Reg<Bit>,
+    /// The word keeps the previous position between two frames.
     swaps: Constant<Bit>,
     has_guards: Constant<Bit>,
     has_all: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
     has_double: Constant<Bit>,
+    /// Start value of `covered`; it is 0 after the skipped cells.
     skip_from: Constant<Bits<4>>,
+    /// Start value of `covered` if a parameter is sent.
     long_skip_from: Constant<Bits<4>>,
+    /// Cells of a frame without F2, payload and additional data.
     fixed_cells: Constant<Bits<7>>,
+    /// Cells of a supplement.
     supplement_cells: Constant<Bits<7>>,
+    /// Payload of a block of additional data.
     info_bits: Constant<Bits<6>>,
+    /// Cells of an answer that follows another one, without its payload.
     cells_from_start: Constant<Bits<7>>,
+    /// High if the word is not aligned yet (double edge only).
     not_aligned: Signal<Local, Bit>,
+    /// High if the last bit has been sampled.
     is_taken: Signal<Local, Bit>,
+    /// High for one cycle: the next answer of a running clock begins.
     again: Signal<Local, Bit>,
+    /// High when a cell is skipped: with each sample, or with each clock edge if the delay is measured.
     skip_step: Signal<Local, Bit>,
+    /// High with the sample of a bit that the CRC covers.
     covered_bit: Signal<Local, Bit>,
+    /// High if the received CRC is that of the bits as they came.
     crc_fits: Signal<Local, Bit>,
+    /// High if the word is shifted by one bit.
     shift: Signal<Local, Bit>,
+    /// Bit that enters the word: a sample, or 0 during the alignment.
     bit_in: Signal<Local, Bit>,
+    /// High if a bit enters the word at bit 49.
     in50: Signal<Local, Bit>,
+    /// High if a bit enters the word at bit 34.
     in35: Signal<Local, Bit>,
+    /// High if a bit enters the word at bit 19.
     in20: Signal<Local, Bit>,
+    /// High if a bit enters the word at bit 4.
     in5: Signal<Local, Bit>,
+    /// Value of `covered` at which the word is aligned.
     aligned_at: Signal<Local, Bits<4>>,
+    /// `covered` after one more cell or bit.
     covered_next: Signal<Local, Bits<4>>,
+    /// High with the sample of a CRC bit.
     crc_bit: Signal<Local, Bit>,
+    /// High with a HIGH sample where the start bit may come.
     start_sample: Signal<Local, Bit>,
+    /// High with the sample in front of a block of additional data.
     separator: Signal<Local, Bit>,
+    /// The word shifted by one bit.
     shifted: Signal<Local, Bits<50>>,
+    /// High if a cell has passed without a start bit: the frame needs one more pulse.
     one_more: Signal<Local, Bit>,
+    /// High if a pulse that the answer needs is sent.
     one_less: Signal<Local, Bit>,
+    /// High with a sample that counts a cell.
     counts: Signal<Local, Bit>,
+    /// Bits of the payload, or of the block under way.
     width: Signal<Local, Bits<6>>,
+    /// Cells that follow the CRC of this answer or block.
     cells_after: Signal<Local, Bits<7>>,
+    /// Cells of the frame besides its payload.
     cells_around: Signal<Local, Bits<7>>,
 }
 

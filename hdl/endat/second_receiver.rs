@@ -74,17 +74,29 @@ pub struct SecondReceiver {
     /// Its raw flags.
     pub flags_told: Signal<Out, Bits<20>>,
     receiver: Receiver,
+    /// `inputs`, one cycle later.
     strobes: Reg<Bits<11>>,
+    /// `signs` in the cycle before.
     signs_before: Reg<Bits<12>>,
+    /// Set when an answer or block is complete; cleared when the next one, or a frame, begins. Its bits are compared.
     holds: Reg<Bit>,
+    /// `separated`, one cycle later.
     separator: Reg<Bit>,
+    /// `separated`, two cycles later: the first receiver drops its bits.
     leaves: Reg<Bit>,
+    /// Set when the two receivers disagree; cleared when a frame begins.
     different: Reg<Bit>,
+    /// Inputs of the first receiver that change within a frame.
     inputs: Signal<Local, Bits<11>>,
+    /// Progress of the first receiver.
     signs: Signal<Local, Bits<12>>,
+    /// High if the progress of the two receivers is not the same.
     apart: Signal<Local, Bit>,
+    /// High if payload, error bits or CRC of the two receivers are not the same.
     bits_differ: Signal<Local, Bit>,
+    /// High for one cycle: an answer or block is complete in the second receiver.
     ends: Signal<Local, Bit>,
+    /// High if the two receivers disagree in this cycle.
     differs_now: Signal<Local, Bit>,
     upset_cause: Constant<Bits<5>>,
     upset_flag: Constant<Bits<20>>,

@@ -130,20 +130,32 @@ pub struct Sequencer {
     /// Odd words of RAM.
     #[start]
     high: Memory<16, 8>,
+    /// Cycle of the instruction.
     #[start(Cycle::Fetch)]
     cycle: Reg<Cycle>,
+    /// Address of the instruction.
     counter: Reg<Bits<11>>,
+    /// Address to which RET goes; set by CALL.
     link: Reg<Bits<11>>,
+    /// A.
     accumulator: Reg<Bits<16>>,
+    /// High if A is 0; one cycle late.
     is_zero: Reg<Bit>,
+    /// C.
     carry: Reg<Bit>,
+    /// X.
     index: Reg<Bits<8>>,
     /// The second program runs.
     is_second: Reg<Bit>,
+    /// Address of the next instruction of the program that waits (shared only).
     other_counter: Reg<Bits<11>>,
+    /// Link of the program that waits (shared only).
     other_link: Reg<Bits<11>>,
+    /// A of the program that waits (shared only).
     other_accumulator: Reg<Bits<16>>,
+    /// C of the program that waits (shared only).
     other_carry: Reg<Bit>,
+    /// X of the program that waits (shared only).
     other_index: Reg<Bits<8>>,
     /// RAM word of the operand.
     address: Reg<Bits<8>>,
@@ -151,48 +163,87 @@ pub struct Sequencer {
     value: Reg<Bits<16>>,
     /// What it is added to: A or 0.
     base: Reg<Bits<16>>,
+    /// High in the third cycle if the operand is the word of RAM.
     takes_memory: Reg<Bit>,
+    /// High in the third cycle if the operand is inverted, for SUB.
     inverts: Reg<Bit>,
+    /// Carry into the sum of the third cycle.
     carry_in: Reg<Bit>,
+    /// Bit that SHR moves into C.
     shifted_out: Reg<Bit>,
+    /// High in the third cycle if C changes.
     loads_carry: Reg<Bit>,
+    /// High in the third cycle if A goes into RAM.
     stores: Reg<Bit>,
+    /// High in the third cycle if A goes to a port.
     writes_port: Reg<Bit>,
-    /// Where the counter goes.
+    /// Next address: 0 the following one, 1 the target, 2 the link, 3 A.
     way: Reg<Bits<2>>,
+    /// High in the third cycle if the word is no instruction: the program goes to 0.
     is_astray: Reg<Bit>,
+    /// Set when the host reads; cleared when its word has been read.
     read_pending: Reg<Bit>,
+    /// Set when the host writes; cleared when its half has been written.
     write_pending: Reg<Bit>,
     /// The RAM was read for the host in the last cycle.
     is_for_host: Reg<Bit>,
+    /// Word that the host has read.
     word: Reg<Bits<32>>,
+    /// Operation of the instruction.
     op: Signal<Local, Bits<4>>,
+    /// Lower two bits of the operation: what `logic` is.
     choice: Signal<Local, Bits<2>>,
+    /// Lower four bits of the instruction: the kind of operation 15.
     special: Signal<Local, Bits<4>>,
+    /// Lower 16 bits of the instruction.
     immediate: Signal<Local, Bits<16>>,
+    /// High in the third cycle.
     is_execute: Signal<Local, Bit>,
+    /// X if the operand takes part of it, otherwise 0.
     offset: Signal<Local, Bits<8>>,
+    /// RAM word of the operand.
     operand_address: Signal<Local, Bits<8>>,
+    /// RAM word that the host accesses.
     host_place: Signal<Local, Bits<8>>,
+    /// RAM word that is read.
     read_word: Signal<Local, Bits<8>>,
+    /// RAM word that is written.
     write_word: Signal<Local, Bits<8>>,
+    /// High if the upper half is written.
     write_half: Signal<Local, Bit>,
+    /// High if a half is written.
     is_written: Signal<Local, Bit>,
+    /// Value that is written.
     written: Signal<Local, Bits<16>>,
+    /// Result of the instructions that need no word of RAM.
     logic: Signal<Local, Bits<16>>,
+    /// High if the instruction uses C, and C is set.
     takes_carry: Signal<Local, Bit>,
+    /// High if A changes.
     loads: Signal<Local, Bit>,
+    /// High if A is loaded from a port.
     takes_port: Signal<Local, Bit>,
+    /// High if the operand is added to A.
     adds: Signal<Local, Bit>,
+    /// Operand of the sum.
     operand: Signal<Local, Bits<16>>,
+    /// Sum of the third cycle; below its lowest bit is a place for the carry.
     sum: Signal<Local, Bits<18>>,
+    /// Address of the following instruction.
     following: Signal<Local, Bits<11>>,
+    /// High if the condition of a jump is true.
     is_taken: Signal<Local, Bit>,
+    /// High at the end of a word that is no instruction.
     goes_astray: Signal<Local, Bit>,
+    /// Address of the next instruction of this program.
     next_counter: Signal<Local, Bits<11>>,
+    /// Link after this instruction.
     next_link: Signal<Local, Bits<11>>,
+    /// C after this instruction.
     next_carry: Signal<Local, Bit>,
+    /// X after this instruction.
     next_index: Signal<Local, Bits<8>>,
+    /// 1 if the program runs twice.
     is_shared: Constant<Bit>,
 }
 

@@ -67,19 +67,31 @@ pub struct Service {
     /// What to write.
     pub host_data: Signal<In, Bits<16>>,
     sequencer: Sequencer,
+    /// Microseconds, modulo 65536.
     time_us: Reg<Bits<16>>,
+    /// Microseconds of the present millisecond.
     us_in_ms: Reg<Bits<10>>,
+    /// Milliseconds, modulo 65536.
     time_ms: Reg<Bits<16>>,
+    /// `time_us` in the cycle after the program reads it, otherwise 0.
     seen_us: Reg<Bits<16>>,
+    /// `time_ms` in the cycle after the program reads it, otherwise 0.
     seen_ms: Reg<Bits<16>>,
     /// Milliseconds for which each run of the program has not shown that it is alive.
     silent_ms: Vec<Reg<Bits<6>>>,
+    /// High if the program reads a time.
     is_time: Signal<Local, Bit>,
+    /// What the port of the second channel had to say, otherwise 0.
     second_in: Signal<Local, Bits<16>>,
+    /// High for one cycle each millisecond.
     is_millisecond: Signal<Local, Bit>,
+    /// One bit for each run of the program: it shows that it is alive.
     lives: Signal<Local, Bits<2>>,
+    /// Port that a run writes to show that it is alive.
     alive_port: Constant<Bits<5>>,
+    /// High if a run has not shown for too long that it is alive: all runs begin anew.
     is_stuck: Signal<Local, Bit>,
+    /// Milliseconds after which a run is stuck.
     stuck_ms: Constant<Bits<6>>,
     _seconds: usize,
     _runs: usize,

@@ -122,14 +122,23 @@ pub struct Transaction {
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
     has_alignment: Constant<Bit>,
+    /// Time tR that DATA must be LOW before a frame, in system clock cycles.
     ready_low_cycles: Constant<Bits<16>>,
+    /// Quiet time after an aborted frame, in microseconds.
     abort_us: Constant<Bits<16>>,
+    /// CLOCK LOW between an answer and its supplement, in system clock cycles.
     park_cycles: Constant<Bits<16>>,
+    /// Longest wait for the answer to a command with a parameter, in microseconds.
     parameter_timeout_us: Constant<Bits<16>>,
+    /// Longest recovery time tm after a request's frame, in system clock cycles.
     own_recovery_limit_cycles: Constant<Bits<16>>,
+    /// Bit of the timer that rises only when a wait is longer than any answer.
     frame_us: Constant<Bits<16>>,
+    /// Time that DATA is driven LOW to probe the line, in microseconds.
     probe_us: Constant<Bits<16>>,
+    /// Time for the line to settle after a probe, in microseconds.
     settle_us: Constant<Bits<16>>,
+    /// CLOCK HIGH at the end of a running clock, in microseconds.
     leave_us: Constant<Bits<16>>,
     data_not_low: Constant<Bits<20>>,
     no_encoder: Constant<Bits<20>>,
@@ -144,80 +153,143 @@ pub struct Transaction {
     too_long: Constant<Bits<20>>,
     tail_low: Constant<Bits<20>>,
     upset: Constant<Bits<20>>,
+    /// Phase of the frame, or of the pause between two frames.
     phase: Reg<Phase>,
+    /// Time since the present wait began: microseconds in `Frame`, `Tail` and `Abort`, else system clock cycles.
     timer: Reg<Bits<16>>,
+    /// `limit`, one cycle later.
     timer_limit: Reg<Bits<16>>,
+    /// High when the timer has reached its limit; low again when the next wait begins.
     timer_hit: Reg<Bit>,
+    /// High in a cycle in which the timer counts: every cycle, or one for each microsecond.
     timer_step: Reg<Bit>,
+    /// High while CLOCK is held LOW: first low phase, wait for the start bit, or pause before the supplement.
     hold: Reg<Bit>,
-    start_now: Reg<Bit>,
-    run_now: Reg<Bit>,
+    /// High for one cycle after `accept`: the frame begins.
+    starting: Reg<Bit>,
+    /// `running`, one cycle later.
+    was_running: Reg<Bit>,
+    /// High if the first low phase of a frame is longer than the others.
     extra: Reg<Bit>,
+    /// High while CLOCK stays HIGH: no frame runs, or the frame is given up, or the running clock is left.
     #[start(true)]
-    stop_now: Reg<Bit>,
+    stopping: Reg<Bit>,
+    /// Set when the delay is measured; cleared by an abort, two wrong CRCs in a row, `afresh` or a fixed delay.
     is_calibrated: Reg<Bit>,
+    /// Set when a frame begins that finds the delay from its start edge; cleared in its tail or by the next frame.
     acquiring: Reg<Bit>,
-    slow_now: Reg<Bit>,
+    /// High if the frame runs at the calibration clock; set or cleared with `accept`, cleared after the tail.
+    is_slow: Reg<Bit>,
+    /// Frames of four that have measured the delay; 0 after an abort, two wrong CRCs in a row or `afresh`.
     passes: Reg<Bits<2>>,
+    /// Set when the cell after the answer has been sampled in `Recovery`; cleared when a frame begins.
     tail_sampled: Reg<Bit>,
+    /// Recovery time tm of the last frame, in system clock cycles.
     recovery: Reg<Bits<13>>,
+    /// Set when the supplement begins; cleared when the next frame begins.
     in_supplement: Reg<Bit>,
-    supplement_now: Reg<Bit>,
+    /// High for one cycle: the supplement begins.
+    supplement_starts: Reg<Bit>,
+    /// Set when the result of the frame is certain; a fault after that is a late one. Cleared with the frame.
     answered: Reg<Bit>,
+    /// `hunting` in the cycle before.
     was_hunting: Reg<Bit>,
+    /// `center` in the cycle before.
     was_center: Reg<Bit>,
+    /// Set when a missing start bit is reported and the clock goes on; cleared by an abort or the next frame.
     late: Reg<Bit>,
+    /// High while DATA is driven LOW in `Abort` to see whether the line follows.
     probing: Reg<Bit>,
+    /// High from the end of a probe until the line has settled.
     settling: Reg<Bit>,
+    /// High while the clock goes on from one answer to the next.
     runs: Vec<ProtectedBit>,
+    /// High while the clock goes on from one answer to the next; low without that feature.
     going: Signal<Local, Bit>,
     _runs: usize,
+    /// High from the end of a running clock until its quiet time is over; that is shorter than after an abort.
     leaving: Reg<Bit>,
+    /// High in the cycle after `timer_clear` or `rise_back`: the timer restarts.
     #[start(true)]
     cleared: Reg<Bit>,
-    /// DATA was HIGH between two frames in the cycle before.
+    /// High for one cycle: DATA was HIGH between two frames, so an encoder may have been plugged.
     plugged: Reg<Bit>,
-    /// The recovery time has begun in the cycle before.
+    /// High for one cycle after `rise_back`: the timer restarts with the cycles that have passed since.
     is_back: Reg<Bit>,
-    /// A running clock has been left in the cycle before.
+    /// High for one cycle after a running clock has been left.
     left: Reg<Bit>,
+    /// High if DATA has been HIGH since the last microsecond tick.
     high_at_tick: Reg<Bit>,
+    /// High from the trigger of a frame until its result is published.
     owing: Reg<Bit>,
+    /// High if the frame begun last runs at the calibration clock, to measure the delay.
     measuring: Reg<Bit>,
+    /// High from the end of a measuring frame until the frame begins that brings the trigger's position.
     once_more: Reg<Bit>,
+    /// High from the start of a frame until it ends or is given up.
     under_way: Reg<Bit>,
+    /// Limit of the timer in this phase.
     limit: Signal<Local, Bits<16>>,
+    /// High in the phases of a frame in which its cells run.
     running: Signal<Local, Bit>,
+    /// High if the timer counts microseconds in this phase, low if it counts system clock cycles.
     in_us: Signal<Local, Bit>,
     timer_clear: Signal<Local, Bit>,
+    /// High for one cycle when the last rising edge of CLOCK has come back: the recovery time begins.
     rise_back: Signal<Local, Bit>,
     in_tail: Signal<Local, Bit>,
     in_recovery: Signal<Local, Bit>,
+    /// High for one cycle: a frame begins.
     accept: Signal<Local, Bit>,
+    /// High if the frame, or the wait for one, ends with the fault in `found`.
     give_up: Signal<Local, Bit>,
+    /// High if a trigger in this cycle is not lost: it begins a frame, or reports at once why not.
     idle: Signal<Local, Bit>,
+    /// High if a trigger, an owed position or a request asks for a frame.
     wanted: Signal<Local, Bit>,
+    /// `trigger`, unless frames are held off.
     triggered: Signal<Local, Bit>,
+    /// High for one cycle: this trigger has a result without a frame.
     refuse: Signal<Local, Bit>,
+    /// High for one cycle: the frame has ended without being given up.
     normal_end: Signal<Local, Bit>,
+    /// High while CLOCK is LOW between the answer and its supplement.
     parking: Signal<Local, Bit>,
+    /// High if the start bit has come and all pulses of the frame are sent; low before a supplement.
     sent: Signal<Local, Bit>,
+    /// High if the frame is a request's, not a trigger's.
     own: Signal<Local, Bit>,
+    /// Flags of the faults found in this cycle.
     found: Signal<Local, Bits<20>>,
+    /// Flags for a line that is HIGH between two frames.
     not_low: Signal<Local, Bits<20>>,
+    /// Flags for a missing start bit.
     no_start: Signal<Local, Bits<20>>,
+    /// High for one cycle: a missing start bit is reported, and the clock goes on to find a late one.
     announce: Signal<Local, Bit>,
+    /// High for one cycle: the answer and its CRC have been received.
     answer_taken: Signal<Local, Bit>,
+    /// High for one cycle at the end of a probe: the level of DATA is its result.
     probed: Signal<Local, Bit>,
+    /// High if the present wait is longer than any answer: the receiver has lost its place.
     endless: Signal<Local, Bit>,
+    /// High in the phases that the watchdog times.
     watched: Signal<Local, Bit>,
+    /// High if the propagation delay is measured or fixed.
     known: Signal<Local, Bit>,
+    /// High with `give_up` if the frame has its result already.
     found_late: Signal<Local, Bit>,
+    /// High for one cycle: the running clock is left.
     leave: Signal<Local, Bit>,
+    /// High for one cycle: a trigger is lost.
     lost: Signal<Local, Bit>,
+    /// High if the position after a measuring frame asks for a frame.
     owed: Signal<Local, Bit>,
+    /// High for one cycle when the bit after the answer shows that the answer has the right length.
     proof: Signal<Local, Bit>,
+    /// High if a frame or its result is outstanding; between two frames this means an upset register.
     vanished: Signal<Local, Bit>,
+    /// High if the delay must be measured again: on request, after a plug or after an upset.
     afresh: Signal<Local, Bit>,
 }
 

@@ -14,14 +14,14 @@ reg [12:0] f_then; initial f_then = 13'd0;
 wire [12:0] f_now = {payload_bits, has_f1, has_f2, has_parameter, has_supplement, going_on, infos};
 wire f_simple = has_f1 & !has_parameter & !has_supplement & !going_on & (infos == 2'd0);
 wire f_alone = !low_separator & !separator_then & !new_block;
-wire f_rest = (field == FIELD_DONE) & !shift_now & !last_payload & !take_crc & !last_taken & !waiting & f_alone;
+wire f_rest = (field == FIELD_DONE) & !shifting & !last_payload & !take_crc & !last_taken & !waiting & f_alone;
 wire f_held = f_same & (f_now == f_then);
 wire f_asked = (payload_bits != 6'd0) & (payload_bits <= 6'd48);
 wire [6:0] f_covered = {1'b0, payload_bits} + 7'd1 + {6'd0, has_f2};
 wire [6:0] f_of_crc = f_count - f_covered;
 wire [2:0] f_crc_bits = f_of_crc[6] ? 3'd0 : f_of_crc[2:0];
 // bits that the word has taken, and places for them
-wire [6:0] f_in = (f_of_crc[6] ? f_count : f_covered) - {6'd0, shift_now};
+wire [6:0] f_in = (f_of_crc[6] ? f_count : f_covered) - {6'd0, shifting};
 wire [6:0] f_size = in5 ? 7'd5 : in20 ? 7'd20 : in35 ? 7'd35 : 7'd50;
 reg f_taken; initial f_taken = 1'b0;
 // x^5 + x^3 + x + 1
@@ -71,10 +71,10 @@ always @* begin
     if (f_held & (f_open | f_whole)) begin
         crc_as_received_lemma_when: assert ((f_count >= f_covered) == (last_payload | take_crc | f_taken));
         crc_as_received_lemma_soon: assert (!last_payload | ((f_count == f_covered) & !take_crc & !f_taken));
-        crc_as_received_lemma_then: assert (!take_crc | ((f_count <= f_covered + 7'd1) & !f_taken & !shift_now));
-        crc_as_received_lemma_shift: assert (!shift_now | ((f_count != 7'd0) & !f_taken));
+        crc_as_received_lemma_then: assert (!take_crc | ((f_count <= f_covered + 7'd1) & !f_taken & !shifting));
+        crc_as_received_lemma_shift: assert (!shifting | ((f_count != 7'd0) & !f_taken));
         if (!f_taken) begin
-            crc_as_received_lemma_word: assert (f_crc == (shift_now ? f_step(~crc_crc, bit_now) : ~crc_crc));
+            crc_as_received_lemma_word: assert (f_crc == (shifting ? f_step(~crc_crc, bit_held) : ~crc_crc));
             crc_as_received_lemma_zeros: assert ((word & ~(50'h3ffffffffffff << (f_size - f_in))) == 50'd0);
             crc_as_received_lemma_above: assert ((word >> f_size) == 50'd0);
             crc_as_received_lemma_count: assert (covered == f_mod_15(f_in));
@@ -88,7 +88,7 @@ always @* begin
         bits_counted_lemma_then: assert (f_simple & f_asked & !in_info & (infos_left == 2'd0) & f_alone);
         bits_counted_lemma_open: assert (f_open == f_answer);
         bits_counted_lemma_whole: assert (!f_whole | (!f_open & (field == FIELD_DONE) & (f_count == f_covered + 7'd5)));
-        bits_counted_lemma_done: assert (!(last_taken | waiting | done_now) | f_whole);
+        bits_counted_lemma_done: assert (!(last_taken | waiting | is_complete) | f_whole);
         if (f_open) begin
             bits_counted_lemma_left: assert ({1'b0, left} == {1'b0, f_covered} + 8'd6 - {1'b0, f_count});
             bits_counted_lemma_f1: assert ((field == FIELD_F1) == (f_count == 7'd0));
@@ -99,12 +99,12 @@ always @* begin
             bits_counted_lemma_before: assert ((field == FIELD_SKIP) | (field == FIELD_START) | (field == FIELD_DONE));
             if (field != FIELD_DONE) begin
                 bits_counted_lemma_clear: assert (f_count == 7'd0);
-                crc_as_received_lemma_clear: assert ((f_crc == 5'd31) & (word == 50'd0) & !f_taken & !shift_now & !last_payload & !take_crc & !align);
+                crc_as_received_lemma_clear: assert ((f_crc == 5'd31) & (word == 50'd0) & !f_taken & !shifting & !last_payload & !take_crc & !align);
                 error_bits_as_received_lemma_clear: assert (f2_bit & f_f2);
             end
         end
         if (field == FIELD_START) bits_counted_lemma_start: assert ((left == f_covered + 7'd6) & (covered == 4'd0));
-        if (field == FIELD_SKIP) bits_counted_lemma_skip: assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shift_now & !align & !take_crc & !last_payload);
+        if (field == FIELD_SKIP) bits_counted_lemma_skip: assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shifting & !align & !take_crc & !last_payload);
     end
 end
 // with SWAPS

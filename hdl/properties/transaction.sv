@@ -44,12 +44,12 @@ always @* if (!HAS_ALL & !HAS_CONTINUOUS) begin
     one_result_per_trigger_lemma_open: assert (f_owed == (owing | f_tells | publish));
 end
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-    starts_at_rest: assert (!start_now | (($past(phase) == PHASE_READY) & !$past(level)));
+    starts_at_rest: assert (!starting | (($past(phase) == PHASE_READY) & !$past(level)));
 end
 always @* begin
     low_for_tr: assert ((phase != PHASE_READY) | (f_low_cycles >= READY_LOW_CYCLES));
     low_for_tr_lemma_timer: assert ((phase != PHASE_NOT_READY) | cleared | (timer < f_low_cycles) | (&f_low_cycles));
-    low_for_tr_lemma_start: assert (!start_now | (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_ABORT));
+    low_for_tr_lemma_start: assert (!starting | (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_ABORT));
     low_for_tr_lemma_back: assert (!is_back | (phase == PHASE_RECOVERY) | (phase == PHASE_ABORT));
     low_for_tr_lemma_limit: assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES - 16'd1));
     low_for_tr_lemma_hit: assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
@@ -77,7 +77,7 @@ endfunction
 // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
 wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
 wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
-wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !start_now;
+wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !starting;
 always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
     forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
     if ($past(aborts)) forward_only_abort: assert (phase == PHASE_ABORT);

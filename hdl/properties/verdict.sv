@@ -12,13 +12,13 @@ reg f_checked; initial f_checked = 1'b0;
 reg f_open; initial f_open = 1'b0;
 reg f_proves; initial f_proves = 1'b0;
 // an answer that was proved in the cycle before and is not given up in this one
-wire f_proved = f_proves & f_open & !gave_up_now;
+wire f_proved = f_proves & f_open & !was_given_up;
 always @(posedge clock) begin
-    f_proves <= !reset & prove & (f_open | taken_now) & !gave_up_now;
+    f_proves <= !reset & prove & (f_open | was_taken) & !was_given_up;
     f_checked <= !reset & f_proved & crc_ok & stored_ok & !f1 & f2 & !settings_upset;
-    f_reason <= !reset & (f_proved | refused | announced | gave_up_now);
-    if (taken_now) f_open <= 1'b1;
-    if (reset | gave_up_now | f_proved) f_open <= 1'b0;
+    f_reason <= !reset & (f_proved | refused | announced | was_given_up);
+    if (was_taken) f_open <= 1'b1;
+    if (reset | was_given_up | f_proved) f_open <= 1'b0;
 end
 always @* begin
     good_means: assert (!good | f_checked);

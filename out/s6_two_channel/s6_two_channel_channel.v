@@ -94,16 +94,24 @@ module s6_two_channel_channel (
     // Its raw flags.
     output wire  [19:0] over_flags
 );
+    // EnDat clock period of a frame that measures the delay, in system clock cycles.
     localparam  [10:0] CALIBRATION_PERIOD_CYCLES = 11'd500;
 
     // Strobe: a trigger has been lost.
     wire         displaced;
+    // Mode command for triggered frames.
     wire   [5:0] command_set;
+    // Position width of the frame.
     reg    [5:0] width_set;
+    // Length of the input filter in the frame, in system clock cycles.
     wire   [3:0] filter_set;
+    // Start window of the frame, in system clock cycles.
     wire   [5:0] window_set;
+    // Mode command of the frame.
     wire   [5:0] command_now;
+    // Bits of the payload of the answer.
     wire   [5:0] payload_bits;
+    // EnDat clock period of the frame, in system clock cycles.
     reg   [10:0] period;
     wire         filter_level;
     wire         filter_edge_strobe;
@@ -164,8 +172,11 @@ module s6_two_channel_channel (
     wire   [5:0] wanted_shape_command;
     wire         wanted_shape_is_position;
     wire         wanted_shape_has_f2;
+    // EnDat clock, for the pin.
     reg          clk_pin; initial clk_pin = 1'b1;
+    // Level for the data line, for the pin.
     reg          data_pin; initial data_pin = 1'b0;
+    // Driver enable, for the pin.
     reg          oe_pin; initial oe_pin = 1'b0;
     wire         _unused_ok = &{1'b0, displaced, transaction_is_at_rest, shape_is_position, wanted_shape_has_f2};
 

@@ -36,14 +36,19 @@ module s6_two_channel_clock_gen (
     // High in the last cycle before a falling edge.
     output wire         fall
 );
+    // High in the last cycle before a rising edge.
     wire         rise_now;
+    // High in the last cycle before a falling edge, but for the first one.
     wire         fall_now;
+    // High while a low phase is held.
     wire         held;
     wire         half_restart;
     wire         half_tick;
     wire   [9:0] half_left_cycles;
+    // Level of the EnDat clock; set with a rising edge, cleared with the start or a falling edge.
     reg          level; initial level = 1'b1;
     reg          level_next;
+    // High in the first cycle after a rising edge.
     reg          risen; initial risen = 1'b0;
     wire         _unused_ok = &{1'b0, half_left_cycles};
 

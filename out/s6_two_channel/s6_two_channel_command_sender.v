@@ -39,8 +39,11 @@ module s6_two_channel_command_sender (
     // Driver enable.
     output reg          oe
 );
+    // Levels of these cells; cell_now selects the one on the line.
     wire   [7:0] cells;
+    // cells_left, modulo 8.
     wire   [2:0] cell_now;
+    // Cells left of the mode command, or of the zeros and start bit of a supplement; counts down to 0.
     reg    [3:0] cells_left; initial cells_left = 4'd0;
     wire         _unused_ok = &{1'b0, start_supplement};
 

@@ -23,8 +23,11 @@ module s6_two_channel_command_shape (
     // F2 follows F1; the selected additional data follow the position.
     output wire         has_f2
 );
+    // Upper three bits of the command.
     wire   [2:0] left;
+    // Lower three bits of the command.
     wire   [2:0] right;
+    // The lower half is the complement of the upper one.
     wire         is_complement;
 
     assign left = command[5:3];

@@ -41,7 +41,9 @@ module s6_two_channel_crc5_word (
     localparam   [4:0] CONSTANT_13 = 5'd18;
     localparam   [4:0] CONSTANT_14 = 5'd5;
 
+    // The word folded to 15 bits.
     wire  [14:0] folded;
+    // The CRC as its parts are added.
     reg    [4:0] sum;
 
     assign folded = word[14:0] ^ word[29:15] ^ word[44:30] ^ {10'd0, word[49:45]};

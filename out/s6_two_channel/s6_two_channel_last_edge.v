@@ -47,11 +47,17 @@ module s6_two_channel_last_edge (
     // It waits for what is under way.
     output wire         stalled
 );
+    // High if all pulses are sent and the start bit has not come yet.
     wire         holds_now;
+    // High for one cycle when a last edge that is still due comes back.
     wire         is_there;
+    // High for one cycle: the recovery time begins, or begins anew with a later edge.
     wire         comes_now;
+    // High if all pulses of the answer are sent.
     reg          sent; initial sent = 1'b0;
+    // Set when CLOCK is held LOW because the start bit is late; cleared when no pulse is under way.
     reg          stall; initial stall = 1'b0;
+    // Set when CLOCK is held LOW: the last edge comes one cell later. Cleared in that cell, or by a start.
     reg          waited; initial waited = 1'b0;
 
     assign holds_now = sent & !started;

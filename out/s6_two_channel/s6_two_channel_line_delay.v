@@ -59,40 +59,68 @@ module s6_two_channel_line_delay (
     // Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
     output wire  [10:0] delay_cycles
 );
+    // High for one cycle: the delay counts from this rising edge of the clock.
     wire         first_rise;
+    // High for one cycle: the start edge of a frame that measures the delay.
     wire         acquired;
+    // High for one cycle at the expected, or measured, data edge of the first cell.
     wire         first_center;
+    // High for one cycle at the middle of the place of a data edge.
     wire         center_now;
+    // High for one cycle: the data line is sampled.
     wire         sample_now;
+    // Change of the tracked delay, in cycles: 1 or -1.
     reg   [10:0] step;
+    // High if the data edge of the cell has come.
     wire         edge_now;
+    // High if no frame runs, or if the clock waits and the cells of all its pulses have ended.
     wire         over;
+    // Tracked delay in places: system clock cycles, or half ones with the double edge.
     wire  [11:0] places;
+    // Tracked delay, in system clock cycles.
     wire  [10:0] delay_now;
+    // High if the data edge of the cell is after its expected place.
     reg          late_now;
+    // High for one cycle: the first cell begins.
     wire         due;
     wire         half_restart;
     wire         half_began;
     wire         half_second;
     wire         half_tick;
     wire   [9:0] half_left_cycles;
+    // Tracked propagation delay tD, in system clock cycles; 0 if a phase tracker has it.
     reg   [10:0] delay; initial delay = 11'd0;
+    // Cycles since the first rising edge of the burst, plus 2; since the last one if the delay is measured.
     reg   [10:0] since_rise; initial since_rise = 11'd0;
+    // Set with the first rising edge of a burst; cleared when the cells of the burst have ended.
     reg          timing_armed; initial timing_armed = 1'b0;
+    // High for one cycle when the tracked delay has passed since the first rising edge.
     reg          delay_over; initial delay_over = 1'b0;
+    // High from the expected data edge of the first cell until the cells of the burst have ended.
     reg          cells_run; initial cells_run = 1'b0;
+    // High from the sample of a cell to the expected data edge of the next one.
     reg          second_half; initial second_half = 1'b0;
+    // High for one cycle where the data line is sampled, half a period after center_strobe.
     reg          sample_strobe; initial sample_strobe = 1'b0;
+    // High for one cycle at the expected place of a data edge.
     reg          center_strobe; initial center_strobe = 1'b0;
+    // Set at the expected place of a data edge; cleared with the sample.
     reg          center_seen; initial center_seen = 1'b0;
+    // High if no data edge counts: no cells run, or the start bit of a measuring frame cannot come yet.
     reg          not_yet; initial not_yet = 1'b0;
+    // over, one cycle later: the cells stop.
     reg          afresh; initial afresh = 1'b0;
+    // High for one cycle after a good start bit whose edge was not at its expected place.
     reg          follow_now; initial follow_now = 1'b0;
+    // Set with the first data edge of a cell; cleared with its sample.
     reg          edge_seen; initial edge_seen = 1'b0;
+    // High if that edge came after its expected place.
     reg          edge_late; initial edge_late = 1'b0;
+    // Cycles between the data edge of a cell and its expected place; one less if it is late.
     reg    [5:0] edge_error; initial edge_error = 6'd0;
+    // Set when that distance exceeds the start window; cleared with the sample.
     reg          edge_outside; initial edge_outside = 1'b0;
-    // A clock pulse whose cell counts left the receiver in the cycle before.
+    // High for one cycle after a clock pulse has been sent whose cell counts.
     reg          pulse_leaves; initial pulse_leaves = 1'b0;
     wire         _unused_ok = &{1'b0, places[11], half_left_cycles};
 

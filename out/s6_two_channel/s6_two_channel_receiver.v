@@ -87,7 +87,9 @@ module s6_two_channel_receiver (
     // CRC computed from the bits as they came.
     output wire   [4:0] crc_computed
 );
+    // Start value of covered; it is 0 after the skipped cells.
     localparam   [3:0] SKIP_FROM = 4'd5;
+    // Cells of a frame without F2, payload and additional data.
     localparam   [6:0] FIXED_CELLS = 7'd17;
     // What the next sample is.
     localparam   [3:0] FIELD_SKIP = 4'd0; // Cells before the earliest start bit: the line is undefined.
@@ -102,67 +104,112 @@ module s6_two_channel_receiver (
     localparam   [3:0] FIELD_DONE = 4'd9; // The answer is complete.
     localparam   [3:0] FIELD_SUPPLEMENT = 4'd10; // Cells of the supplement: the line is ours or undefined.
 
+    // High if the last bit has been sampled.
     wire         is_taken;
+    // High when a cell is skipped: with each sample, or with each clock edge if the delay is measured.
     reg          skip_step;
+    // High with the sample of a bit that the CRC covers.
     reg          covered_bit;
+    // High if the received CRC is that of the bits as they came.
     wire         crc_fits;
+    // High if the word is shifted by one bit.
     wire         shift;
+    // Bit that enters the word: a sample, or 0 during the alignment.
     wire         bit_in;
+    // High if a bit enters the word at bit 49.
     wire         in50;
+    // High if a bit enters the word at bit 34.
     wire         in35;
+    // High if a bit enters the word at bit 19.
     wire         in20;
+    // High if a bit enters the word at bit 4.
     wire         in5;
+    // Value of covered at which the word is aligned.
     reg    [3:0] aligned_at;
+    // covered after one more cell or bit.
     reg    [3:0] covered_next;
+    // High with the sample of a CRC bit.
     reg          crc_bit;
+    // High with a HIGH sample where the start bit may come.
     wire         start_sample;
+    // The word shifted by one bit.
     reg   [49:0] shifted;
+    // High if a cell has passed without a start bit: the frame needs one more pulse.
     wire         one_more;
+    // High if a pulse that the answer needs is sent.
     wire         one_less;
+    // High with a sample that counts a cell.
     wire         counts;
+    // Bits of the payload, or of the block under way.
     wire   [5:0] width;
+    // Cells of the frame besides its payload.
     reg    [6:0] cells_around;
     wire   [4:0] crc_crc;
+    // Part of the answer to which the next sample belongs.
     reg    [3:0] field; initial field = FIELD_DONE;
     reg    [3:0] field_next;
+    // Cells until the end of the frame; those that wait for the start bit are not counted.
     reg    [6:0] left; initial left = 7'd0;
     reg    [6:0] left_next;
     // The cell that comes is the last one of the payload.
     reg          payload_ends; initial payload_ends = 1'b0;
     // The cell that comes is the last one of the CRC.
     reg          crc_ends; initial crc_ends = 1'b0;
+    // Clock pulses that the frame still needs.
     reg    [6:0] to_send; initial to_send = 7'd0;
     reg    [6:0] to_send_next;
+    // Bits of the answer as they come in; the payload from bit 0 on when they are aligned.
     reg   [49:0] word; initial word = 50'd0;
     reg   [49:0] word_next;
+    // Cells that are skipped, then bits that are shifted in, modulo 15.
     reg    [3:0] covered; initial covered = 4'd0;
     reg    [3:0] covered_d;
+    // Error bit F1 of the answer.
     reg          f1_bit; initial f1_bit = 1'b0;
     reg          f1_bit_next;
+    // Error bit F2 of the answer; high in frames without it.
     reg          f2_bit; initial f2_bit = 1'b1;
     reg          f2_bit_next;
+    // CRC as received; bit 4 came first.
     reg    [4:0] crc_bits; initial crc_bits = 5'd0;
+    // CRC of the bits as they came; valid one cycle after take_crc.
     reg    [4:0] crc_calc; initial crc_calc = 5'd0;
     reg    [4:0] crc_calc_next;
+    // High for one cycle when the last bit of the payload is in the word: its CRC is stored.
     reg          take_crc; initial take_crc = 1'b0;
+    // High while the word is shifted down to bit 0.
     reg          align; initial align = 1'b0;
     reg          align_next;
+    // High in the first cycle of the alignment, which never ends it.
     reg          align_first; initial align_first = 1'b0;
+    // High for one cycle after the last bit of an answer or block has been sampled.
     reg          last_taken; initial last_taken = 1'b0;
     reg          last_taken_next;
-    reg          done_now; initial done_now = 1'b0;
+    // High for one cycle: an answer or a block of additional data is complete.
+    reg          is_complete; initial is_complete = 1'b0;
+    // High if the counts of cells and pulses agree that this cell is the last one.
     reg          used; initial used = 1'b0;
+    // High if the counts of cells and pulses agree that no cell is left.
     reg          ended; initial ended = 1'b0;
+    // High if the received CRC is that of the bits as they came.
     reg          crc_equal; initial crc_equal = 1'b0;
+    // High for one cycle after a start bit whose edge is outside the window.
     reg          refused; initial refused = 1'b0;
-    reg          shift_now; initial shift_now = 1'b0;
-    reg          bit_now; initial bit_now = 1'b0;
+    // High for one cycle after the sample of a covered bit: bit_held is shifted in.
+    reg          shifting; initial shifting = 1'b0;
+    // level in the cycle before.
+    reg          bit_held; initial bit_held = 1'b0;
+    // High for one cycle after the last bit of the payload has been sampled.
     reg          last_payload; initial last_payload = 1'b0;
     reg          last_payload_next;
-    reg          hunting_now; initial hunting_now = 1'b0;
-    reg          started_now; initial started_now = 1'b0;
+    // High while field is Start; one cycle late.
+    reg          is_hunting; initial is_hunting = 1'b0;
+    // High while field is neither Skip nor Start; one cycle late.
+    reg          has_started; initial has_started = 1'b0;
+    // Rounds of 15 cells that are skipped after the present one.
     reg    [1:0] skip_rounds; initial skip_rounds = 2'd0;
     reg    [1:0] skip_rounds_next;
+    // Blocks of additional data whose separator has not come yet.
     reg    [1:0] infos_left; initial infos_left = 2'd0;
     reg    [1:0] infos_left_next;
     wire         _unused_ok = &{1'b0, start_supplement};
@@ -184,7 +231,7 @@ module s6_two_channel_receiver (
     end
 
     // A sample comes two cycles after the one before at least: the state has been registered by then.
-    assign start_sample = hunting_now & sample & level;
+    assign start_sample = is_hunting & sample & level;
     // Cells and pulses.
     // Where a bit has few system clock cycles cells go on until the end has been seen.
     assign counts = sample & ((field != FIELD_DONE) | (|left[6:1]));
@@ -196,8 +243,8 @@ module s6_two_channel_receiver (
     assign in20 = (width <= 6'd18) & !in5;
     assign in35 = (width <= 6'd33) & !in5 & !in20;
     assign in50 = !in5 & !in20 & !in35;
-    assign bit_in = bit_now & !align;
-    assign shift = shift_now | align;
+    assign bit_in = bit_held & !align;
+    assign shift = shifting | align;
 
     always @* begin
         shifted = {1'b0, word[49:1]};
@@ -384,10 +431,10 @@ module s6_two_channel_receiver (
 
     // How far the answer is.
     assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
-    assign hunting = hunting_now;
+    assign hunting = is_hunting;
     assign start_found = start_sample & edge_in_window;
     assign start_refused = refused;
-    assign started = started_now;
+    assign started = has_started;
     assign all_sent = !(|to_send);
     assign last_sent = (to_send == 7'd1) & one_less & !one_more;
     assign none_under_way = to_send == left;
@@ -395,8 +442,8 @@ module s6_two_channel_receiver (
     assign all_ended = ended;
 
     always @* begin
-        done = done_now;
-        finished = done_now;
+        done = is_complete;
+        finished = is_complete;
     end
 
     assign payload = word[47:0];
@@ -424,16 +471,16 @@ module s6_two_channel_receiver (
             align <= 1'b0;
             align_first <= 1'b0;
             last_taken <= 1'b0;
-            done_now <= 1'b0;
+            is_complete <= 1'b0;
             used <= 1'b0;
             ended <= 1'b0;
             crc_equal <= 1'b0;
             refused <= 1'b0;
-            shift_now <= 1'b0;
-            bit_now <= 1'b0;
+            shifting <= 1'b0;
+            bit_held <= 1'b0;
             last_payload <= 1'b0;
-            hunting_now <= 1'b0;
-            started_now <= 1'b0;
+            is_hunting <= 1'b0;
+            has_started <= 1'b0;
             skip_rounds <= 2'd0;
             infos_left <= 2'd0;
         end else begin
@@ -461,7 +508,7 @@ module s6_two_channel_receiver (
             // The word is aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
             align_first <= take_crc;
             last_taken <= last_taken_next;
-            done_now <= is_taken;
+            is_complete <= is_taken;
             // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the
             // cause's path.
             used <= all_sent & (left == 7'd1);
@@ -469,11 +516,11 @@ module s6_two_channel_receiver (
             crc_equal <= crc_fits;
             refused <= start_sample & !edge_in_window;
             // One cycle later than the sample: the whole word hangs on this enable.
-            shift_now <= covered_bit;
-            bit_now <= level;
+            shifting <= covered_bit;
+            bit_held <= level;
             last_payload <= last_payload_next;
-            hunting_now <= field == FIELD_START;
-            started_now <= (field != FIELD_SKIP) & (field != FIELD_START);
+            is_hunting <= field == FIELD_START;
+            has_started <= (field != FIELD_SKIP) & (field != FIELD_START);
             skip_rounds <= skip_rounds_next;
             infos_left <= infos_left_next;
         end
@@ -515,14 +562,14 @@ module s6_two_channel_receiver (
     wire [12:0] f_now = {payload_bits, has_f1, has_f2, has_parameter, has_supplement, going_on, infos};
     wire f_simple = has_f1 & !has_parameter & !has_supplement & !going_on & (infos == 2'd0);
     wire f_alone = !low_separator & !separator_then & !new_block;
-    wire f_rest = (field == FIELD_DONE) & !shift_now & !last_payload & !take_crc & !last_taken & !waiting & f_alone;
+    wire f_rest = (field == FIELD_DONE) & !shifting & !last_payload & !take_crc & !last_taken & !waiting & f_alone;
     wire f_held = f_same & (f_now == f_then);
     wire f_asked = (payload_bits != 6'd0) & (payload_bits <= 6'd48);
     wire [6:0] f_covered = {1'b0, payload_bits} + 7'd1 + {6'd0, has_f2};
     wire [6:0] f_of_crc = f_count - f_covered;
     wire [2:0] f_crc_bits = f_of_crc[6] ? 3'd0 : f_of_crc[2:0];
     // bits that the word has taken, and places for them
-    wire [6:0] f_in = (f_of_crc[6] ? f_count : f_covered) - {6'd0, shift_now};
+    wire [6:0] f_in = (f_of_crc[6] ? f_count : f_covered) - {6'd0, shifting};
     wire [6:0] f_size = in5 ? 7'd5 : in20 ? 7'd20 : in35 ? 7'd35 : 7'd50;
     reg f_taken; initial f_taken = 1'b0;
     // x^5 + x^3 + x + 1
@@ -572,10 +619,10 @@ module s6_two_channel_receiver (
         if (f_held & (f_open | f_whole)) begin
             `FORMAL_LABEL(crc_as_received_lemma_when) assert ((f_count >= f_covered) == (last_payload | take_crc | f_taken));
             `FORMAL_LABEL(crc_as_received_lemma_soon) assert (!last_payload | ((f_count == f_covered) & !take_crc & !f_taken));
-            `FORMAL_LABEL(crc_as_received_lemma_then) assert (!take_crc | ((f_count <= f_covered + 7'd1) & !f_taken & !shift_now));
-            `FORMAL_LABEL(crc_as_received_lemma_shift) assert (!shift_now | ((f_count != 7'd0) & !f_taken));
+            `FORMAL_LABEL(crc_as_received_lemma_then) assert (!take_crc | ((f_count <= f_covered + 7'd1) & !f_taken & !shifting));
+            `FORMAL_LABEL(crc_as_received_lemma_shift) assert (!shifting | ((f_count != 7'd0) & !f_taken));
             if (!f_taken) begin
-                `FORMAL_LABEL(crc_as_received_lemma_word) assert (f_crc == (shift_now ? f_step(~crc_crc, bit_now) : ~crc_crc));
+                `FORMAL_LABEL(crc_as_received_lemma_word) assert (f_crc == (shifting ? f_step(~crc_crc, bit_held) : ~crc_crc));
                 `FORMAL_LABEL(crc_as_received_lemma_zeros) assert ((word & ~(50'h3ffffffffffff << (f_size - f_in))) == 50'd0);
                 `FORMAL_LABEL(crc_as_received_lemma_above) assert ((word >> f_size) == 50'd0);
                 `FORMAL_LABEL(crc_as_received_lemma_count) assert (covered == f_mod_15(f_in));
@@ -589,7 +636,7 @@ module s6_two_channel_receiver (
             `FORMAL_LABEL(bits_counted_lemma_then) assert (f_simple & f_asked & !in_info & (infos_left == 2'd0) & f_alone);
             `FORMAL_LABEL(bits_counted_lemma_open) assert (f_open == f_answer);
             `FORMAL_LABEL(bits_counted_lemma_whole) assert (!f_whole | (!f_open & (field == FIELD_DONE) & (f_count == f_covered + 7'd5)));
-            `FORMAL_LABEL(bits_counted_lemma_done) assert (!(last_taken | waiting | done_now) | f_whole);
+            `FORMAL_LABEL(bits_counted_lemma_done) assert (!(last_taken | waiting | is_complete) | f_whole);
             if (f_open) begin
                 `FORMAL_LABEL(bits_counted_lemma_left) assert ({1'b0, left} == {1'b0, f_covered} + 8'd6 - {1'b0, f_count});
                 `FORMAL_LABEL(bits_counted_lemma_f1) assert ((field == FIELD_F1) == (f_count == 7'd0));
@@ -600,12 +647,12 @@ module s6_two_channel_receiver (
                 `FORMAL_LABEL(bits_counted_lemma_before) assert ((field == FIELD_SKIP) | (field == FIELD_START) | (field == FIELD_DONE));
                 if (field != FIELD_DONE) begin
                     `FORMAL_LABEL(bits_counted_lemma_clear) assert (f_count == 7'd0);
-                    `FORMAL_LABEL(crc_as_received_lemma_clear) assert ((f_crc == 5'd31) & (word == 50'd0) & !f_taken & !shift_now & !last_payload & !take_crc & !align);
+                    `FORMAL_LABEL(crc_as_received_lemma_clear) assert ((f_crc == 5'd31) & (word == 50'd0) & !f_taken & !shifting & !last_payload & !take_crc & !align);
                     `FORMAL_LABEL(error_bits_as_received_lemma_clear) assert (f2_bit & f_f2);
                 end
             end
             if (field == FIELD_START) `FORMAL_LABEL(bits_counted_lemma_start) assert ((left == f_covered + 7'd6) & (covered == 4'd0));
-            if (field == FIELD_SKIP) `FORMAL_LABEL(bits_counted_lemma_skip) assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shift_now & !align & !take_crc & !last_payload);
+            if (field == FIELD_SKIP) `FORMAL_LABEL(bits_counted_lemma_skip) assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shifting & !align & !take_crc & !last_payload);
         end
     end
     // word_kept: The position that the receiver is given behind a frame stays in it until the next frame.

@@ -118,9 +118,13 @@ module s6_two_channel_transaction (
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles
 );
+    // Time tR that DATA must be LOW before a frame, in system clock cycles.
     localparam  [15:0] READY_LOW_CYCLES = 16'd51;
+    // Quiet time after an aborted frame, in microseconds.
     localparam  [15:0] ABORT_US = 16'd30000;
+    // CLOCK LOW between an answer and its supplement, in system clock cycles.
     localparam  [15:0] PARK_CYCLES = 16'd200;
+    // Bit of the timer that rises only when a wait is longer than any answer.
     localparam  [15:0] FRAME_US = 16'd4096;
     localparam  [19:0] DATA_NOT_LOW = 20'd1;
     localparam  [19:0] NO_START_BIT = 20'd2;
@@ -139,28 +143,48 @@ module s6_two_channel_transaction (
     localparam   [2:0] PHASE_ABORT = 3'd6; // Quiet after an aborted frame.
     localparam   [2:0] PHASE_PARK = 3'd7; // Clock LOW between answer and supplement.
 
+    // Limit of the timer in this phase.
     reg   [15:0] limit;
+    // High in the phases of a frame in which its cells run.
     reg          running;
+    // High if the timer counts microseconds in this phase, low if it counts system clock cycles.
     reg          in_us;
     reg          timer_clear;
+    // High for one cycle when the last rising edge of CLOCK has come back: the recovery time begins.
     wire         rise_back;
     wire         in_tail;
     wire         in_recovery;
+    // High for one cycle: a frame begins.
     reg          accept;
+    // High if the frame, or the wait for one, ends with the fault in found.
     reg          give_up;
+    // High if a trigger in this cycle is not lost: it begins a frame, or reports at once why not.
     reg          idle;
+    // High if a trigger, an owed position or a request asks for a frame.
     wire         wanted;
+    // trigger, unless frames are held off.
     wire         triggered;
+    // High for one cycle: this trigger has a result without a frame.
     reg          refuse;
+    // High for one cycle: the frame has ended without being given up.
     reg          normal_end;
+    // High if the start bit has come and all pulses of the frame are sent; low before a supplement.
     wire         sent;
+    // Flags of the faults found in this cycle.
     reg   [19:0] found;
+    // High for one cycle: the answer and its CRC have been received.
     reg          answer_taken;
+    // High if the present wait is longer than any answer: the receiver has lost its place.
     wire         endless;
+    // High if the propagation delay is measured or fixed.
     wire         known;
+    // High for one cycle: a trigger is lost.
     wire         lost;
+    // High if the position after a measuring frame asks for a frame.
     wire         owed;
+    // High for one cycle when the bit after the answer shows that the answer has the right length.
     reg          proof;
+    // High if the delay must be measured again: on request, after a plug or after an upset.
     wire         afresh;
     wire         last_edge_all_sent;
     wire         last_edge_holds;
@@ -173,52 +197,77 @@ module s6_two_channel_transaction (
     wire         verdict_is_telling;
     wire         verdict_publishes;
     wire         verdict_once_more;
+    // Phase of the frame, or of the pause between two frames.
     reg    [2:0] phase; initial phase = PHASE_NOT_READY;
     reg    [2:0] phase_next;
+    // Time since the present wait began: microseconds in Frame, Tail and Abort, else system clock cycles.
     reg   [15:0] timer; initial timer = 16'd0;
+    // limit, one cycle later.
     reg   [15:0] timer_limit; initial timer_limit = 16'd0;
+    // High when the timer has reached its limit; low again when the next wait begins.
     reg          timer_hit; initial timer_hit = 1'b0;
+    // High in a cycle in which the timer counts: every cycle, or one for each microsecond.
     reg          timer_step; initial timer_step = 1'b0;
+    // High while CLOCK is held LOW: first low phase, wait for the start bit, or pause before the supplement.
     reg          hold; initial hold = 1'b0;
-    reg          start_now; initial start_now = 1'b0;
-    reg          run_now; initial run_now = 1'b0;
+    // High for one cycle after accept: the frame begins.
+    reg          starting; initial starting = 1'b0;
+    // running, one cycle later.
+    reg          was_running; initial was_running = 1'b0;
+    // High if the first low phase of a frame is longer than the others.
     reg          extra; initial extra = 1'b0;
-    reg          stop_now; initial stop_now = 1'b1;
+    // High while CLOCK stays HIGH: no frame runs, or the frame is given up, or the running clock is left.
+    reg          stopping; initial stopping = 1'b1;
+    // Set when the delay is measured; cleared by an abort, two wrong CRCs in a row, afresh or a fixed delay.
     reg          is_calibrated; initial is_calibrated = 1'b0;
     reg          is_calibrated_next;
+    // Set when a frame begins that finds the delay from its start edge; cleared in its tail or by the next frame.
     reg          acquiring; initial acquiring = 1'b0;
     reg          acquiring_next;
-    reg          slow_now; initial slow_now = 1'b0;
-    reg          slow_now_next;
+    // High if the frame runs at the calibration clock; set or cleared with accept, cleared after the tail.
+    reg          is_slow; initial is_slow = 1'b0;
+    reg          is_slow_next;
+    // Set when the cell after the answer has been sampled in Recovery; cleared when a frame begins.
     reg          tail_sampled; initial tail_sampled = 1'b0;
     reg          tail_sampled_next;
+    // Recovery time tm of the last frame, in system clock cycles.
     reg   [12:0] recovery; initial recovery = 13'd0;
     reg   [12:0] recovery_next;
-    reg          supplement_now; initial supplement_now = 1'b0;
-    reg          supplement_now_next;
+    // High for one cycle: the supplement begins.
+    reg          supplement_starts; initial supplement_starts = 1'b0;
+    reg          supplement_starts_next;
+    // Set when the result of the frame is certain; a fault after that is a late one. Cleared with the frame.
     reg          answered; initial answered = 1'b0;
     reg          answered_next;
+    // hunting in the cycle before.
     reg          was_hunting; initial was_hunting = 1'b0;
+    // center in the cycle before.
     reg          was_center; initial was_center = 1'b0;
+    // High in the cycle after timer_clear or rise_back: the timer restarts.
     reg          cleared; initial cleared = 1'b1;
-    // DATA was HIGH between two frames in the cycle before.
+    // High for one cycle: DATA was HIGH between two frames, so an encoder may have been plugged.
     reg          plugged; initial plugged = 1'b0;
     reg          plugged_next;
-    // The recovery time has begun in the cycle before.
+    // High for one cycle after rise_back: the timer restarts with the cycles that have passed since.
     reg          is_back; initial is_back = 1'b0;
+    // High if DATA has been HIGH since the last microsecond tick.
     reg          high_at_tick; initial high_at_tick = 1'b0;
+    // High from the trigger of a frame until its result is published.
     reg          owing; initial owing = 1'b0;
+    // High if the frame begun last runs at the calibration clock, to measure the delay.
     reg          measuring; initial measuring = 1'b0;
     reg          measuring_next;
+    // High from the end of a measuring frame until the frame begins that brings the trigger's position.
     reg          once_more; initial once_more = 1'b0;
     reg          once_more_next;
+    // High from the start of a frame until it ends or is given up.
     reg          under_way; initial under_way = 1'b0;
     reg          under_way_next;
 
     s6_two_channel_last_edge u_last_edge (
         .clock(clock),
         .reset(reset),
-        .start(start_now),
+        .start(starting),
         .no_pulse_left(all_sent),
         .last_sent(last_sent),
         .none_under_way(none_under_way),
@@ -284,7 +333,7 @@ module s6_two_channel_transaction (
     always @* begin
         phase_next = phase;
         acquiring_next = acquiring;
-        slow_now_next = slow_now;
+        is_slow_next = is_slow;
         tail_sampled_next = tail_sampled;
         recovery_next = recovery;
         answered_next = answered;
@@ -296,7 +345,7 @@ module s6_two_channel_transaction (
         plugged_next = 1'b0;
         refuse = 1'b0;
         normal_end = 1'b0;
-        supplement_now_next = 1'b0;
+        supplement_starts_next = 1'b0;
         limit = {4'd0, start_timeout_us};
         in_us = 1'b0;
         timer_clear = 1'b0;
@@ -395,7 +444,7 @@ module s6_two_channel_transaction (
                 if (timer_hit) begin
                     phase_next = PHASE_FRAME;
                     timer_clear = 1'b1;
-                    supplement_now_next = 1'b1;
+                    supplement_starts_next = 1'b1;
                     if (!all_ended) begin
                         found = UPSET;
                         give_up = 1'b1;
@@ -417,7 +466,7 @@ module s6_two_channel_transaction (
                     phase_next = PHASE_RECOVERY;
                     // From here on the full clock's times again: a short tm ends before half a slow period does.
                     acquiring_next = 1'b0;
-                    slow_now_next = 1'b0;
+                    is_slow_next = 1'b0;
                 end
             end
             PHASE_RECOVERY: begin
@@ -503,14 +552,14 @@ module s6_two_channel_transaction (
         end
         // What a frame begins with.
         if (accept) begin
-            slow_now_next = !known;
+            is_slow_next = !known;
         end
         // A cycle later: the first clock edge has not come by then.
-        if (start_now) begin
-            measuring_next = slow_now;
+        if (starting) begin
+            measuring_next = is_slow;
             under_way_next = 1'b1;
             answered_next = 1'b0;
-            acquiring_next = slow_now;
+            acquiring_next = is_slow;
             tail_sampled_next = 1'b0;
         end
         if (afresh) begin
@@ -526,19 +575,19 @@ module s6_two_channel_transaction (
     assign verdict_is_late = answered & !verdict_once_more;
     // Triggers that are lost, and the result that is owed.
     assign lost = trigger & ((!accept & !idle) | owing);
-    assign run = run_now;
-    assign start = start_now;
+    assign run = was_running;
+    assign start = starting;
     // Taking the start bit ends its cell; started comes when the comparison knows that.
     assign sent = last_edge_all_sent & started;
     assign hold_low = hold;
     assign drain = last_edge_stalled;
     // The high phase of the last pulse may last two cycles only.
-    assign stop = stop_now | sent;
+    assign stop = stopping | sent;
     // What is told.
     assign acquire = acquiring;
-    assign slow = slow_now;
+    assign slow = is_slow;
     assign busy = !idle | once_more;
-    assign start_supplement = supplement_now;
+    assign start_supplement = supplement_starts;
     assign is_at_rest = ((phase == PHASE_NOT_READY) | (phase == PHASE_READY)) & !verdict_is_telling;
     assign recovery_cycles = recovery;
 
@@ -553,16 +602,16 @@ module s6_two_channel_transaction (
             timer_hit <= 1'b0;
             timer_step <= 1'b0;
             hold <= 1'b0;
-            start_now <= 1'b0;
-            run_now <= 1'b0;
+            starting <= 1'b0;
+            was_running <= 1'b0;
             extra <= 1'b0;
-            stop_now <= 1'b1;
+            stopping <= 1'b1;
             is_calibrated <= 1'b0;
             acquiring <= 1'b0;
-            slow_now <= 1'b0;
+            is_slow <= 1'b0;
             tail_sampled <= 1'b0;
             recovery <= 13'd0;
-            supplement_now <= 1'b0;
+            supplement_starts <= 1'b0;
             answered <= 1'b0;
             was_hunting <= 1'b0;
             was_center <= 1'b0;
@@ -584,7 +633,7 @@ module s6_two_channel_transaction (
             if (is_back) begin
                 timer <= {15'd1, timer_step};
             end
-            if (start_now) begin
+            if (starting) begin
                 timer <= 16'd3;
             end
             timer_limit <= limit;
@@ -597,17 +646,17 @@ module s6_two_channel_transaction (
             end
             timer_step <= !in_us | tick_us;
             hold <= (phase == PHASE_FIRST_LOW) | last_edge_holds;
-            start_now <= accept;
+            starting <= accept;
             // The clock: when it runs, stands LOW, and ends.
-            run_now <= running;
+            was_running <= running;
             extra <= |first_low_extra_cycles;
-            stop_now <= !running | aborts;
+            stopping <= !running | aborts;
             is_calibrated <= is_calibrated_next;
             acquiring <= acquiring_next;
-            slow_now <= slow_now_next;
+            is_slow <= is_slow_next;
             tail_sampled <= tail_sampled_next;
             recovery <= recovery_next;
-            supplement_now <= supplement_now_next;
+            supplement_starts <= supplement_starts_next;
             answered <= answered_next;
             // Time-outs, each counted from the beginning of its span.
             was_hunting <= hunting;
@@ -697,12 +746,12 @@ module s6_two_channel_transaction (
         `FORMAL_LABEL(one_result_per_trigger_lemma_open) assert (f_owed == (owing | f_tells | publish));
     end
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin
-        `FORMAL_LABEL(starts_at_rest) assert (!start_now | (($past(phase) == PHASE_READY) & !$past(level)));
+        `FORMAL_LABEL(starts_at_rest) assert (!starting | (($past(phase) == PHASE_READY) & !$past(level)));
     end
     always @* begin
         `FORMAL_LABEL(low_for_tr) assert ((phase != PHASE_READY) | (f_low_cycles >= READY_LOW_CYCLES));
         `FORMAL_LABEL(low_for_tr_lemma_timer) assert ((phase != PHASE_NOT_READY) | cleared | (timer < f_low_cycles) | (&f_low_cycles));
-        `FORMAL_LABEL(low_for_tr_lemma_start) assert (!start_now | (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_ABORT));
+        `FORMAL_LABEL(low_for_tr_lemma_start) assert (!starting | (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_ABORT));
         `FORMAL_LABEL(low_for_tr_lemma_back) assert (!is_back | (phase == PHASE_RECOVERY) | (phase == PHASE_ABORT));
         `FORMAL_LABEL(low_for_tr_lemma_limit) assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES - 16'd1));
         `FORMAL_LABEL(low_for_tr_lemma_hit) assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
@@ -733,7 +782,7 @@ module s6_two_channel_transaction (
     // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
     wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
     wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
-    wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !start_now;
+    wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !starting;
     always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
         `FORMAL_LABEL(forward_only) assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
         if ($past(aborts)) `FORMAL_LABEL(forward_only_abort) assert (phase == PHASE_ABORT);

@@ -77,6 +77,7 @@ module s6_two_channel_verdict (
     // Strobe: a trigger has been lost.
     output wire         displaced
 );
+    // Flags that this core can find.
     localparam  [19:0] POSSIBLE = 20'h80647;
     localparam  [19:0] CRC_WRONG = 20'd8;
     localparam  [19:0] PARALLEL_WRONG = 20'h100;
@@ -84,48 +85,69 @@ module s6_two_channel_verdict (
     localparam  [19:0] F2_CLEAR = 20'd32;
     localparam  [19:0] TRIGGER_OVERRUN = 20'd128;
 
+    // Flags to report: those that came with the strobe, of the answer, of lost triggers and of upsets.
     reg   [19:0] found_all;
+    // High if the received CRC does not fit the bits as they came, or as they are stored.
     wire         crc_bad;
+    // High if the answer has a wrong CRC or an alarm bit.
     wire         answer_bad;
+    // High for one cycle: the answer has the right length.
     wire         proven;
+    // High for one cycle: the result is published in the next cycle.
     wire         publishes_now;
+    // High with proven if the answer has measured the delay: the position itself comes with another frame.
     wire         measured;
     // Flags that came with the last strobe.
     reg   [19:0] seen; initial seen = 20'd0;
     // High for one cycle after prove, unless the frame was given up.
     reg          prove_seen; initial prove_seen = 1'b0;
-    reg          taken_now; initial taken_now = 1'b0;
-    reg          gave_up_now; initial gave_up_now = 1'b0;
+    // answer_taken, one cycle later.
+    reg          was_taken; initial was_taken = 1'b0;
+    // give_up, one cycle later; never in two cycles in a row.
+    reg          was_given_up; initial was_given_up = 1'b0;
+    // High with gave_up if the result of the frame is already published.
     reg          gave_up_late; initial gave_up_late = 1'b0;
+    // refuse, one cycle later.
     reg          refused; initial refused = 1'b0;
+    // normal_end, one cycle later.
     reg          ended; initial ended = 1'b0;
+    // Set when a trigger is lost; cleared when a result has reported it.
     reg          overrun; initial overrun = 1'b0;
+    // High if the last answer had a wrong CRC.
     reg          was_bad; initial was_bad = 1'b0;
-    reg          publish_now; initial publish_now = 1'b0;
-    reg          good_now; initial good_now = 1'b0;
+    // High for one cycle: the result of a trigger is published.
+    reg          publishing; initial publishing = 1'b0;
+    // High for one cycle: the answer is good and has the right length.
+    reg          is_good; initial is_good = 1'b0;
+    // Set when an answer is taken; cleared when its length is proven or the frame is given up.
     reg          pending; initial pending = 1'b0;
-    reg          withdraw_now; initial withdraw_now = 1'b0;
-    reg          confirm_now; initial confirm_now = 1'b0;
-    reg          late_now; initial late_now = 1'b0;
+    // High for one cycle: the published position is withdrawn.
+    reg          withdrawing; initial withdrawing = 1'b0;
+    // High for one cycle: the published position is final.
+    reg          confirming; initial confirming = 1'b0;
+    // High for one cycle: a fault that was found after the result is reported.
+    reg          reports_late; initial reports_late = 1'b0;
     // High from the end of a frame until its cause and flags are valid.
     reg          telling; initial telling = 1'b0;
-    reg          lost_now; initial lost_now = 1'b0;
-    reg   [19:0] flags_now; initial flags_now = 20'd0;
+    // lost, one cycle later.
+    reg          was_lost; initial was_lost = 1'b0;
+    // Flags of the last result or later fault; the primary cause is chosen from them.
+    reg   [19:0] flags_held; initial flags_held = 20'd0;
 
     s6_two_channel_primary_cause u_chooser (
-        .flags(flags_now),
+        .flags(flags_held),
         .cause(cause_told)
     );
 
     assign crc_bad = !(crc_ok & stored_ok);
     assign answer_bad = crc_bad | f1 | !f2;
-    assign is_pending = pending | taken_now;
-    assign proven = prove_seen & pending & !gave_up_now;
+    assign is_pending = pending | was_taken;
+    assign proven = prove_seen & pending & !was_given_up;
     assign measured = proven & is_measuring & !answer_bad;
 
     always @* begin
         found_all = seen;
-        if (proven | (is_pending & gave_up_now)) begin
+        if (proven | (is_pending & was_given_up)) begin
             if (crc_bad) begin
                 found_all = found_all | CRC_WRONG;
             end
@@ -145,80 +167,79 @@ module s6_two_channel_verdict (
         end
     end
 
-    assign publishes_now = (proven & !measured) | refused | (gave_up_now & !gave_up_late);
+    assign publishes_now = (proven & !measured) | refused | (was_given_up & !gave_up_late);
     assign publishes = publishes_now;
-    assign is_received = taken_now & !crc_bad;
-    assign is_doubtful = taken_now & crc_bad & was_bad;
-    assign taken = taken_now;
-    assign gave_up = gave_up_now;
+    assign is_received = was_taken & !crc_bad;
+    assign is_doubtful = was_taken & crc_bad & was_bad;
+    assign taken = was_taken;
+    assign gave_up = was_given_up;
     assign is_telling = telling;
-    assign publish = publish_now;
-    assign good = good_now;
+    assign publish = publishing;
+    assign good = is_good;
     assign once_more = measured;
-    assign late_fault = late_now;
-    assign withdraw = withdraw_now;
-    assign confirm = confirm_now;
-    assign displaced = lost_now;
-    assign flags_told = flags_now;
+    assign late_fault = reports_late;
+    assign withdraw = withdrawing;
+    assign confirm = confirming;
+    assign displaced = was_lost;
+    assign flags_told = flags_held;
 
     always @(posedge clock) begin
         if (reset) begin
             seen <= 20'd0;
             prove_seen <= 1'b0;
-            taken_now <= 1'b0;
-            gave_up_now <= 1'b0;
+            was_taken <= 1'b0;
+            was_given_up <= 1'b0;
             gave_up_late <= 1'b0;
             refused <= 1'b0;
             ended <= 1'b0;
             overrun <= 1'b0;
             was_bad <= 1'b0;
-            publish_now <= 1'b0;
-            good_now <= 1'b0;
+            publishing <= 1'b0;
+            is_good <= 1'b0;
             pending <= 1'b0;
-            withdraw_now <= 1'b0;
-            confirm_now <= 1'b0;
-            late_now <= 1'b0;
+            withdrawing <= 1'b0;
+            confirming <= 1'b0;
+            reports_late <= 1'b0;
             telling <= 1'b0;
-            lost_now <= 1'b0;
-            flags_now <= 20'd0;
+            was_lost <= 1'b0;
+            flags_held <= 20'd0;
         end else begin
             // Synthesis does not see by itself that some flags are never set.
             seen <= found & POSSIBLE;
             // A frame that is given up has that as its one result.
-            prove_seen <= prove & is_pending & !gave_up_now;
-            // An answer that is complete in the cycle of an abort is not left pending for the next frame.
-            taken_now <= answer_taken & !gave_up_now;
-            gave_up_now <= give_up & !gave_up_now;
+            prove_seen <= prove & is_pending & !was_given_up;
+            was_taken <= answer_taken;
+            was_given_up <= give_up & !was_given_up;
             // Nothing has been published of a frame that measured.
-            gave_up_late <= give_up & !gave_up_now & is_late & !measured;
+            gave_up_late <= give_up & !was_given_up & is_late & !measured;
             refused <= refuse;
             ended <= normal_end;
-            if (proven | gave_up_now | refused) begin
-                flags_now <= found_all;
+            if (proven | was_given_up | refused) begin
+                flags_held <= found_all;
                 // What ends a frame that measures is told to nobody.
                 if (!measured) begin
                     overrun <= 1'b0;
                 end
             end
-            if (lost_now) begin
+            if (was_lost) begin
                 overrun <= 1'b1;
             end
-            if (taken_now) begin
+            if (was_taken) begin
                 was_bad <= crc_bad;
             end
-            publish_now <= publishes_now;
-            good_now <= proven & !answer_bad;
-            if (taken_now) begin
+            publishing <= publishes_now;
+            is_good <= proven & !answer_bad;
+            if (was_taken) begin
                 pending <= 1'b1;
             end
-            if (proven | gave_up_now) begin
+            if (proven | was_given_up) begin
                 pending <= 1'b0;
             end
-            withdraw_now <= gave_up_late;
-            confirm_now <= ended;
-            late_now <= gave_up_late;
-            telling <= normal_end | give_up | refuse | ended | gave_up_now | refused;
-            lost_now <= lost;
+            withdrawing <= gave_up_late;
+            confirming <= ended;
+            reports_late <= gave_up_late;
+            telling <= normal_end | give_up | refuse | ended | was_given_up | refused;
+            was_lost <= lost;
         end
     end
 
@@ -245,13 +266,13 @@ module s6_two_channel_verdict (
     reg f_open; initial f_open = 1'b0;
     reg f_proves; initial f_proves = 1'b0;
     // an answer that was proved in the cycle before and is not given up in this one
-    wire f_proved = f_proves & f_open & !gave_up_now;
+    wire f_proved = f_proves & f_open & !was_given_up;
     always @(posedge clock) begin
-        f_proves <= !reset & prove & (f_open | taken_now) & !gave_up_now;
+        f_proves <= !reset & prove & (f_open | was_taken) & !was_given_up;
         f_checked <= !reset & f_proved & crc_ok & stored_ok & !f1 & f2 & !settings_upset;
-        f_reason <= !reset & (f_proved | refused | announced | gave_up_now);
-        if (taken_now) f_open <= 1'b1;
-        if (reset | gave_up_now | f_proved) f_open <= 1'b0;
+        f_reason <= !reset & (f_proved | refused | announced | was_given_up);
+        if (was_taken) f_open <= 1'b1;
+        if (reset | was_given_up | f_proved) f_open <= 1'b0;
     end
     always @* begin
         `FORMAL_LABEL(good_means) assert (!good | f_checked);

@@ -58,7 +58,7 @@ impl Logic for Receiver {
         }
         // A sample comes two cycles after the one before at least: the state has been registered by then.
         self.start_sample.next =
-            self.hunting_now.q.val() & self.cells.sample.val() & self.level.val();
+            self.is_hunting.q.val() & self.cells.sample.val() & self.level.val();
         self.covered_bit.next = false;
         self.crc_bit.next = false;
         self.last_payload.d.next = false;
@@ -227,11 +227,11 @@ impl Logic for Receiver {
         self.in20.next = (self.width.val() <= 18) & !self.in5.val();
         self.in35.next = (self.width.val() <= 33) & !self.in5.val() & !self.in20.val();
         self.in50.next = !self.in5.val() & !self.in20.val() & !self.in35.val();
-        self.bit_in.next = self.bit_now.q.val() & !self.align.q.val();
+        self.bit_in.next = self.bit_held.q.val() & !self.align.q.val();
         // One cycle later than the sample: the whole word hangs on this enable.
-        self.shift_now.d.next = self.covered_bit.val();
-        self.bit_now.d.next = self.level.val();
-        self.shift.next = self.shift_now.q.val() | self.align.q.val();
+        self.shifting.d.next = self.covered_bit.val();
+        self.bit_held.d.next = self.level.val();
+        self.shift.next = self.shifting.q.val() | self.align.q.val();
         self.shifted.next = self.word.q.val() >> 1;
         if self.in50.val() {
             self.shifted.next = (self.word.q.val() >> 1).replace_bit(49, self.bit_in.val());
@@ -312,7 +312,7 @@ impl Logic for Receiver {
         self.not_aligned.next = self.align.q.val() & self.has_double.val();
         self.is_taken.next = self.last_taken.q.val() | self.waiting.q.val();
         self.waiting.d.next = self.is_taken.val() & self.not_aligned.val();
-        self.done_now.d.next = self.is_taken.val() & !self.not_aligned.val();
+        self.is_complete.d.next = self.is_taken.val() & !self.not_aligned.val();
         self.crc_fits.next = self.crc_bits.q.val() == self.crc_calc.q.val();
         self.crc_equal.d.next = self.crc_fits.val();
         self.stored_fits.d.next = self.check.is_ok.val() & self.has_guards.val();
@@ -418,14 +418,14 @@ impl Logic for Receiver {
     fn tell_progress(&mut self) {
         self.progress.skipping.next =
             (self.field.q.val() == Field::Skip) | (self.field.q.val() == Field::Supplement);
-        self.hunting_now.d.next = self.field.q.val() == Field::Start;
-        self.progress.hunting.next = self.hunting_now.q.val();
+        self.is_hunting.d.next = self.field.q.val() == Field::Start;
+        self.progress.hunting.next = self.is_hunting.q.val();
         self.progress.start_found.next = self.start_sample.val() & self.cells.edge_in_window.val();
         self.refused.d.next = self.start_sample.val() & !self.cells.edge_in_window.val();
         self.progress.start_refused.next = self.refused.q.val();
-        self.started_now.d.next =
+        self.has_started.d.next =
             (self.field.q.val() != Field::Skip) & (self.field.q.val() != Field::Start);
-        self.progress.started.next = self.started_now.q.val();
+        self.progress.started.next = self.has_started.q.val();
         self.progress.all_sent.next = !self.to_send.q.val().any();
         self.progress.one_to_send.next = self.to_send.q.val() == 1;
         self.progress.last_sent.next =
@@ -440,18 +440,19 @@ impl Logic for Receiver {
             & self.progress.none_under_way.val()
             & !self.under_way.q.val().any();
         self.progress.all_ended.next = self.ended.q.val();
-        self.progress.done.next = self.done_now.q.val();
+        self.progress.done.next = self.is_complete.q.val();
         self.progress.info_done.next = false;
         self.progress.separated.next = false;
         self.progress.info_missing.next = false;
         self.progress.last_bit.next = self.last_taken.q.val();
-        self.progress.finished.next = self.done_now.q.val();
+        self.progress.finished.next = self.is_complete.q.val();
         if self.has_all.val() {
-            self.progress.done.next = self.done_now.q.val() & !self.in_info.q.val();
-            self.progress.info_done.next = self.done_now.q.val() & self.in_info.q.val();
+            self.progress.done.next = self.is_complete.q.val() & !self.in_info.q.val();
+            self.progress.info_done.next = self.is_complete.q.val() & self.in_info.q.val();
             self.progress.separated.next = self.low_separator.q.val();
             self.progress.info_missing.next = self.missing.q.val();
-            self.progress.finished.next = (self.done_now.q.val() & !self.infos_left.q.val().any())
+            self.progress.finished.next = (self.is_complete.q.val()
+                & !self.infos_left.q.val().any())
                 | self.supplement_over.q.val();
         }
         self.progress.gap_good.next = self.good_gap.q.val() & self.has_continuous.val();

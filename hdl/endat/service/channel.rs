@@ -74,33 +74,56 @@ pub struct ServiceChannel {
     pub host_write: Signal<In, Bit>,
     /// The half: 1 = high. Written last, the low one acts.
     pub host_half: Signal<In, Bit>,
+    /// Set when a frame ends; cleared by the program.
     has_event: Reg<Bit>,
+    /// Set when a frame ends before the program has seen the one before; cleared by the program.
     missed: Reg<Bit>,
+    /// High if the last frame had the request.
     event_request: Reg<Bit>,
+    /// Primary cause of the last frame.
     event_cause: Reg<Bits<5>>,
+    /// Set when the host writes a request; cleared by the program.
     request_written: Reg<Bit>,
+    /// Set when the host writes the control word; cleared by the program.
     control_written: Reg<Bit>,
     /// The host has written a word: set with either half, cleared by the program.
     written: Reg<Bit>,
+    /// Triggers that have been lost, modulo 65536.
     lost_count: Reg<Bits<16>>,
+    /// Mode command of the request.
     out_command: Reg<Bits<6>>,
+    /// MRS code, address or port of the request.
     out_address: Reg<Bits<8>>,
+    /// Data of the request.
     out_data: Reg<Bits<16>>,
+    /// Strobes: bit 0 the request rides, 1 it has its own frame, 2 it is cancelled, 3 the delay is measured.
     out_go: Reg<Bits<4>>,
     // Until the program has begun, no trigger may get in its way.
+    /// Bit 0 holds frames off, 1 keeps the clock low, 2 is the channel's alarm.
     #[given]
     out_control: Reg<Bits<3>>,
+    /// Faults that a test forces upon frames.
     out_force: Reg<Bits<5>>,
+    /// Position width found, 0 if none; bit 6: frames use mode command 000111.
     out_found: Reg<Bits<7>>,
+    /// EnDat clock period in system clock cycles; 0 = as configured.
     out_period: Reg<Bits<11>>,
+    /// Longest time of a frame, in microseconds; 0 = not watched.
     out_watchdog: Reg<Bits<12>>,
+    /// Shortest recovery time, in system clock cycles; 0 = not checked.
     out_recovery: Reg<Bits<13>>,
+    /// Bit 0: the clock goes on after each position; bit 1: it stops after an error.
     out_continuous: Reg<Bits<2>>,
+    /// Status of the channel for the program.
     status: Signal<Local, Bits<16>>,
+    /// Answer to a request that arrived MSB first.
     turned: Signal<Local, Bits<24>>,
+    /// One bit for each port: the program reads it.
     chosen: Signal<Local, Bits<32>>,
+    /// Word of each port in the cycle after the program reads it, otherwise 0.
     seen: Vec<Reg<Bits<16>>>,
     _words: usize,
+    /// 1 if the encoder gets the short recovery time.
     wants_short: Constant<Bit>,
 }
 

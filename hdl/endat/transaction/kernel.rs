@@ -46,7 +46,7 @@ impl Logic for Transaction {
         self.plugged.d.next = false;
         self.refuse.next = false;
         self.normal_end.next = false;
-        self.supplement_now.d.next = false;
+        self.supplement_starts.d.next = false;
         self.limit.next = bit_cast::<16, 12>(self.limits.start_timeout_us.val());
         if self.has_all.val() & self.shape.has_parameter.val() {
             self.limit.next = self.parameter_timeout_us.val();
@@ -181,7 +181,7 @@ impl Logic for Transaction {
             self.timer.d.next = bit_cast::<16, 3>(self.last_edge.ago_cycles.val())
                 + bit_cast::<16, 2>((bit_cast::<2, 1>(self.timer_step.q.val().into())) | 2);
         }
-        if self.start_now.q.val() {
+        if self.starting.q.val() {
             self.timer.d.next = 3.into();
         }
     }
@@ -198,7 +198,7 @@ impl Logic for Transaction {
             last_bit, no_pulse_left = all_sent, one_pulse_left = one_to_send, last_sent, none_under_way,
             started
         );
-        self.last_edge.start.next = self.start_now.q.val();
+        self.last_edge.start.next = self.starting.q.val();
         self.rise_back.next = self.last_edge.comes.val();
         self.last_edge.was_center.next = self.was_center.q.val();
         self.last_edge.tail_sampled.next = self.tail_sampled.q.val();
@@ -228,7 +228,7 @@ impl Logic for Transaction {
             & !(self.has_alignment.val() & self.is_fixed.val())
         {
             self.is_calibrated.d.next = true;
-            if self.has_alignment.val() & self.slow_now.q.val() {
+            if self.has_alignment.val() & self.is_slow.q.val() {
                 self.passes.d.next = self.passes.q.val() + 1;
                 self.is_calibrated.d.next = self.passes.q.val().all();
             }
@@ -272,16 +272,16 @@ impl Logic for Transaction {
     /// What a frame begins with.
     fn begin_frame(&mut self) {
         if self.accept.val() {
-            self.slow_now.d.next = !self.known.val();
+            self.is_slow.d.next = !self.known.val();
         }
         // A cycle later: the first clock edge has not come by then.
-        if self.start_now.q.val() {
-            self.measuring.d.next = self.slow_now.q.val();
+        if self.starting.q.val() {
+            self.measuring.d.next = self.is_slow.q.val();
             self.under_way.d.next = true;
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
-            self.acquiring.d.next = self.slow_now.q.val()
-                & !(self.has_alignment.val() & self.passes.q.val().any());
+            self.acquiring.d.next =
+                self.is_slow.q.val() & !(self.has_alignment.val() & self.passes.q.val().any());
             self.tail_sampled.d.next = false;
             self.late.d.next = false;
         }
@@ -331,10 +331,10 @@ impl Logic for Transaction {
 
     /// The clock: when it runs, stands LOW, and ends.
     fn hold_clock(&mut self) {
-        self.run_now.d.next = self.running.val();
-        self.cell_control.run.next = self.run_now.q.val();
-        self.start_now.d.next = self.accept.val();
-        self.control.start.next = self.start_now.q.val();
+        self.was_running.d.next = self.running.val();
+        self.cell_control.run.next = self.was_running.q.val();
+        self.starting.d.next = self.accept.val();
+        self.control.start.next = self.starting.q.val();
         self.control.aborts.next = self.verdict.gave_up.val();
         // Taking the start bit ends its cell; `started` comes when the comparison knows that.
         self.sent.next =
@@ -354,20 +354,20 @@ impl Logic for Transaction {
             self.cell_control.drain.next =
                 self.last_edge.stalled.val() | (self.phase.q.val() == Phase::Park);
         }
-        self.stop_now.d.next = !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
+        self.stopping.d.next = !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
         // The high phase of the last pulse may last two cycles only.
-        self.stop.next = self.stop_now.q.val() | self.sent.val();
+        self.stop.next = self.stopping.q.val() | self.sent.val();
     }
 
     /// What is told.
     fn tell(&mut self) {
         self.control.acquire.next = self.acquiring.q.val();
-        self.cell_control.slow.next = self.slow_now.q.val();
+        self.cell_control.slow.next = self.is_slow.q.val();
         self.busy.next = !self.idle.val()
             | self.once_more.q.val()
             | (self.next_frame.begin_own.val() & self.has_all.val());
         ToldOut::link(&mut self.told, &mut self.verdict.told);
-        self.control.start_supplement.next = self.supplement_now.q.val();
+        self.control.start_supplement.next = self.supplement_starts.q.val();
         self.over.next = self.verdict.over.val();
         self.begun.next = self.accept.val() | self.refuse.val();
         // A reset may have come in the middle of a frame. After power-up nobody has begun one.
@@ -394,7 +394,7 @@ impl Logic for Transaction {
     /// Health of the line.
     fn watch_health(&mut self) {
         connect!(self.health <= self; tick_us, level);
-        self.health.start.next = self.start_now.q.val();
+        self.health.start.next = self.starting.q.val();
         self.health.under_way.next = self.watched.val() & self.is_watched.val() & !self.going.val();
         self.health.watchdog_us.next = self.limits.watchdog_us.val();
         self.health.probed.next = self.probed.val();

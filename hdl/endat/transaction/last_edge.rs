@@ -64,14 +64,23 @@ pub struct LastEdge {
     /// It waits for what is under way.
     pub stalled: Signal<Out, Bit>,
     has_double: Constant<Bit>,
+    /// High if all pulses of the answer are sent.
     sent: Reg<Bit>,
+    /// `one_pulse_left`, one cycle later.
     one_left: Reg<Bit>,
+    /// Set when CLOCK is held LOW because the start bit is late; cleared when no pulse is under way.
     stall: Reg<Bit>,
+    /// High if all pulses are sent and the start bit has not come yet.
     holds_now: Signal<Local, Bit>,
+    /// Set when CLOCK is held LOW: the last edge comes one cell later. Cleared in that cell, or by a start.
     waited: Reg<Bit>,
+    /// Set when the last bit is sampled; cleared when the last edge comes back (double edge only).
     due: Reg<Bit>,
+    /// System clock cycles since the last edge came back; counts until `comes` (double edge only).
     ago: Reg<Bits<3>>,
+    /// High for one cycle when a last edge that is still due comes back.
     is_there: Signal<Local, Bit>,
+    /// High for one cycle: the recovery time begins, or begins anew with a later edge.
     comes_now: Signal<Local, Bit>,
 }
 

@@ -89,7 +89,9 @@ pub struct Verdict {
     chooser: PrimaryCause,
     has_guards: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
+    /// Shortest recovery time tm after a request's frame, in system clock cycles.
     own_recovery_min_cycles: Constant<Bits<13>>,
+    /// Flags that this core can find.
     possible: Constant<Bits<20>>,
     crc_wrong: Constant<Bits<20>>,
     parallel_wrong: Constant<Bits<20>>,
@@ -103,34 +105,61 @@ pub struct Verdict {
     seen: Reg<Bits<20>>,
     /// High for one cycle after `prove`, unless the frame was given up.
     prove_seen: Reg<Bit>,
-    taken_now: Reg<Bit>,
-    gave_up_now: Reg<Bit>,
+    /// `answer_taken`, one cycle later.
+    was_taken: Reg<Bit>,
+    /// `give_up`, one cycle later; never in two cycles in a row.
+    was_given_up: Reg<Bit>,
+    /// High with `gave_up` if the result of the frame is already published.
     gave_up_late: Reg<Bit>,
+    /// `refuse`, one cycle later.
     refused: Reg<Bit>,
+    /// `announce`, one cycle later.
     announced: Reg<Bit>,
+    /// `normal_end`, one cycle later.
     ended: Reg<Bit>,
+    /// Set when a trigger is lost; cleared when a result has reported it.
     overrun: Reg<Bit>,
+    /// High if the last answer had a wrong CRC.
     was_bad: Reg<Bit>,
-    publish_now: Reg<Bit>,
-    good_now: Reg<Bit>,
+    /// High for one cycle: the result of a trigger is published.
+    publishing: Reg<Bit>,
+    /// High for one cycle: the answer is good and has the right length.
+    is_good: Reg<Bit>,
+    /// Set when a measuring frame has no result, so its short tm is not reported; cleared by the next answer.
     is_silent: Reg<Bit>,
+    /// Set when an answer is taken; cleared when its length is proven or the frame is given up.
     pending: Reg<Bit>,
-    withdraw_now: Reg<Bit>,
-    confirm_now: Reg<Bit>,
-    late_now: Reg<Bit>,
-    over_now: Reg<Bit>,
+    /// High for one cycle: the published position is withdrawn.
+    withdrawing: Reg<Bit>,
+    /// High for one cycle: the published position is final.
+    confirming: Reg<Bit>,
+    /// High for one cycle: a fault that was found after the result is reported.
+    reports_late: Reg<Bit>,
+    /// High for one cycle: a frame has ended in whatever way.
+    frame_over: Reg<Bit>,
     /// High from the end of a frame until its cause and flags are valid.
     telling: Reg<Bit>,
-    lost_now: Reg<Bit>,
-    flags_now: Reg<Bits<20>>,
+    /// `lost`, one cycle later.
+    was_lost: Reg<Bit>,
+    /// Flags of the last result or later fault; the primary cause is chosen from them.
+    flags_held: Reg<Bits<20>>,
+    /// Flags to report: those that came with the strobe, of the answer, of lost triggers and of upsets.
     found_all: Signal<Local, Bits<20>>,
+    /// High if the received CRC does not fit the bits as they came, or as they are stored.
     crc_bad: Signal<Local, Bit>,
+    /// High if the answer has a wrong CRC or an alarm bit.
     answer_bad: Signal<Local, Bit>,
+    /// High for one cycle: the answer has the right length.
     proven: Signal<Local, Bit>,
+    /// High for one cycle: the result is published in the next cycle.
     publishes_now: Signal<Local, Bit>,
+    /// High with `proven` if a good answer came while settings of the frame changed.
     upset: Signal<Local, Bit>,
+    /// High with `proven` if the answer has measured the delay: the position itself comes with another frame.
     measured: Signal<Local, Bit>,
+    /// Shortest recovery time of this frame, in system clock cycles.
     recovery_min: Signal<Local, Bits<13>>,
+    /// High if a frame without a fault has ended before the shortest recovery time.
     early: Signal<Local, Bit>,
 }
 
@@ -180,11 +209,11 @@ impl Logic for Verdict {
         // Synthesis does not see by itself that some flags are never set.
         self.seen.d.next = self.found.val() & self.possible.val();
         // An answer that is complete in the cycle of an abort is not left pending for the next frame.
-        self.taken_now.d.next = self.answer_taken.val() & !self.gave_up_now.q.val();
-        self.gave_up_now.d.next = self.give_up.val() & !self.gave_up_now.q.val();
+        self.was_taken.d.next = self.answer_taken.val() & !self.was_given_up.q.val();
+        self.was_given_up.d.next = self.give_up.val() & !self.was_given_up.q.val();
         // Nothing has been published of a frame that measured.
         self.gave_up_late.d.next = self.give_up.val()
-            & !self.gave_up_now.q.val()
+            & !self.was_given_up.q.val()
             & self.is_late.val()
             & !self.measured.val();
         self.refused.d.next = self.refuse.val();
@@ -192,17 +221,18 @@ impl Logic for Verdict {
         self.ended.d.next = self.normal_end.val();
 
         // Of what has been told: the choice is kept out of the path of what is found.
-        self.chooser.flags.next = self.flags_now.q.val();
+        self.chooser.flags.next = self.flags_held.q.val();
         self.crc_bad.next = !(self.check.crc_ok.val() & self.check.stored_ok.val());
         self.answer_bad.next = self.crc_bad.val() | self.check.f1.val() | !self.check.f2.val();
         self.is_bad.next = self.answer_bad.val();
-        self.is_pending.next = self.pending.q.val() | self.taken_now.q.val();
+        self.is_pending.next = self.pending.q.val() | self.was_taken.q.val();
         // A frame that is given up has that as its one result.
         self.prove_seen.d.next =
-            self.prove.val() & self.is_pending.val() & !self.gave_up_now.q.val();
-        self.proven.next = self.prove_seen.q.val() & self.pending.q.val() & !self.gave_up_now.q.val();
+            self.prove.val() & self.is_pending.val() & !self.was_given_up.q.val();
+        self.proven.next =
+            self.prove_seen.q.val() & self.pending.q.val() & !self.was_given_up.q.val();
         self.found_all.next = self.seen.q.val();
-        if self.proven.val() | (self.is_pending.val() & self.gave_up_now.q.val()) {
+        if self.proven.val() | (self.is_pending.val() & self.was_given_up.q.val()) {
             if self.crc_bad.val() {
                 self.found_all.next = self.found_all.val() | self.crc_wrong.val();
                 if self.has_diagnosis.val() & self.check.is_echo.val() {
@@ -220,7 +250,7 @@ impl Logic for Verdict {
                 self.found_all.next = self.found_all.val() | self.parallel_wrong.val();
             }
         }
-        if self.taken_now.q.val() {
+        if self.was_taken.q.val() {
             self.was_bad.d.next = self.crc_bad.val();
         }
         self.upset.next = self.proven.val() & !self.answer_bad.val() & self.settings_upset.val();
@@ -231,7 +261,7 @@ impl Logic for Verdict {
             & !self.is_own.val();
         // A frame is not given up for nothing: a register that says so was upset.
         if self.upset.val()
-            | (self.has_guards.val() & self.gave_up_now.q.val() & !self.seen.q.val().any())
+            | (self.has_guards.val() & self.was_given_up.q.val() & !self.seen.q.val().any())
         {
             self.found_all.next = self.found_all.val() | self.stored_upset.val();
         }
@@ -253,12 +283,12 @@ impl Logic for Verdict {
             self.found_all.next = self.found_all.val() | self.too_short.val();
         }
         if self.proven.val()
-            | self.gave_up_now.q.val()
+            | self.was_given_up.q.val()
             | self.refused.q.val()
             | self.announced.q.val()
             | self.early.val()
         {
-            self.flags_now.d.next = self.found_all.val();
+            self.flags_held.d.next = self.found_all.val();
             // What ends a frame that measures is told to nobody.
             if !self.is_own.val()
                 & !self.measured.val()
@@ -267,8 +297,8 @@ impl Logic for Verdict {
                 self.overrun.d.next = false;
             }
         }
-        self.lost_now.d.next = self.lost.val();
-        if self.lost_now.q.val() {
+        self.was_lost.d.next = self.lost.val();
+        if self.was_lost.q.val() {
             self.overrun.d.next = true;
         }
         if self.measured.val() {
@@ -280,45 +310,46 @@ impl Logic for Verdict {
         self.publishes_now.next = ((self.proven.val() & !self.measured.val())
             | self.refused.q.val()
             | self.announced.q.val()
-            | (self.gave_up_now.q.val() & !self.gave_up_late.q.val()))
+            | (self.was_given_up.q.val() & !self.gave_up_late.q.val()))
             & !self.is_own.val();
-        self.publish_now.d.next = self.publishes_now.val();
+        self.publishing.d.next = self.publishes_now.val();
         self.publishes.next = self.publishes_now.val();
-        if self.taken_now.q.val() {
+        if self.was_taken.q.val() {
             self.pending.d.next = true;
         }
-        if self.proven.val() | self.gave_up_now.q.val() {
+        if self.proven.val() | self.was_given_up.q.val() {
             self.pending.d.next = false;
         }
-        self.late_now.d.next = (self.gave_up_late.q.val()
+        self.reports_late.d.next = (self.gave_up_late.q.val()
             | (self.early.val() & !self.is_silent.q.val()))
             & !self.is_own.val();
-        self.withdraw_now.d.next = self.gave_up_late.q.val() & !self.is_own.val();
-        self.confirm_now.d.next = self.ended.q.val() & !self.is_own.val();
-        self.is_received.next = self.taken_now.q.val() & !self.crc_bad.val();
-        self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.val() & self.was_bad.q.val();
-        self.good_now.d.next = self.proven.val() & !self.answer_bad.val() & !self.upset.val();
+        self.withdrawing.d.next = self.gave_up_late.q.val() & !self.is_own.val();
+        self.confirming.d.next = self.ended.q.val() & !self.is_own.val();
+        self.is_received.next = self.was_taken.q.val() & !self.crc_bad.val();
+        self.is_doubtful.next = self.was_taken.q.val() & self.crc_bad.val() & self.was_bad.q.val();
+        self.is_good.d.next = self.proven.val() & !self.answer_bad.val() & !self.upset.val();
         // `over` comes with cause and flags of whatever ended the frame.
-        self.over_now.d.next = self.ended.q.val() | self.gave_up_now.q.val() | self.refused.q.val();
+        self.frame_over.d.next =
+            self.ended.q.val() | self.was_given_up.q.val() | self.refused.q.val();
         self.telling.d.next = self.normal_end.val()
             | self.give_up.val()
             | self.refuse.val()
             | self.ended.q.val()
-            | self.gave_up_now.q.val()
+            | self.was_given_up.q.val()
             | self.refused.q.val();
 
-        self.taken.next = self.taken_now.q.val();
-        self.gave_up.next = self.gave_up_now.q.val();
+        self.taken.next = self.was_taken.q.val();
+        self.gave_up.next = self.was_given_up.q.val();
         self.is_telling.next = self.telling.q.val();
-        self.told.publish.next = self.publish_now.q.val();
-        self.told.good.next = self.good_now.q.val();
+        self.told.publish.next = self.publishing.q.val();
+        self.told.good.next = self.is_good.q.val();
         self.once_more.next = self.measured.val();
-        self.told.late_fault.next = self.late_now.q.val();
-        self.told.withdraw.next = self.withdraw_now.q.val();
-        self.told.confirm.next = self.confirm_now.q.val();
-        self.over.next = self.over_now.q.val();
-        self.displaced.next = self.lost_now.q.val();
+        self.told.late_fault.next = self.reports_late.q.val();
+        self.told.withdraw.next = self.withdrawing.q.val();
+        self.told.confirm.next = self.confirming.q.val();
+        self.over.next = self.frame_over.q.val();
+        self.displaced.next = self.was_lost.q.val();
         self.told.cause_told.next = self.chooser.cause.val();
-        self.told.flags_told.next = self.flags_now.q.val();
+        self.told.flags_told.next = self.flags_held.q.val();
     }
 }

@@ -261,7 +261,7 @@ fn a_trigger_has_its_result_even_if_the_frame_is_lost() {
     for name in [
         "transaction.phase",
         "transaction.tail_sampled",
-        "transaction.run_now",
+        "transaction.was_running",
     ] {
         let (net, width) = register(&ready, name);
         for bit in 0..width {

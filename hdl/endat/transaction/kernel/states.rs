@@ -157,7 +157,7 @@ impl Transaction {
             self.phase.d.next = Phase::Frame;
             self.timer_clear.next = true;
             self.in_supplement.d.next = true;
-            self.supplement_now.d.next = true;
+            self.supplement_starts.d.next = true;
             if !self.progress.all_ended.val() {
                 self.found.next = self.upset.val();
                 self.give_up.next = true;
@@ -183,7 +183,7 @@ impl Transaction {
             self.phase.d.next = Phase::Recovery;
             // From here on the full clock's times again: a short tm ends before half a slow period does.
             self.acquiring.d.next = false;
-            self.slow_now.d.next = false;
+            self.is_slow.d.next = false;
         }
     }
 
