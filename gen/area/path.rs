@@ -117,7 +117,31 @@ struct Place<'a> {
     file: &'a str,
     line: usize,
     text: &'a str,
-    is_driver: bool,
+    rank: Rank,
+}
+
+/// How much a line says of a signal, the best first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    /// It gives the signal its value, in a clocked assignment or by an operation.
+    Value,
+    /// It hands on the value of another name.
+    Copy,
+    /// It only declares the signal.
+    Declaration,
+}
+
+impl Rank {
+    /// Rank of the line of an assignment.
+    fn of(line: &str) -> Self {
+        let value = line.split_once('=').map_or("", |(_, value)| value);
+        let value = value.trim().trim_end_matches(';');
+        let is_name = value.chars().all(|c| c.is_alphanumeric() || c == '_');
+        match is_name && !line.contains("<=") {
+            true => Self::Copy,
+            false => Self::Value,
+        }
+    }
 }
 
 impl<'a> Design<'a> {
@@ -132,11 +156,12 @@ impl<'a> Design<'a> {
         let (file, declared): (_, usize) = at?;
         let driver = driver(&file.text, signal);
         let line = driver.or_else(|| with_comments(&file.text, declared))?;
+        let text = file.text.lines().nth(line - 1)?.trim();
         Some(Place {
             file: &file.path,
             line,
-            text: file.text.lines().nth(line - 1)?.trim(),
-            is_driver: driver.is_some(),
+            text,
+            rank: driver.map_or(Rank::Declaration, |_| Rank::of(text)),
         })
     }
 
@@ -173,8 +198,8 @@ impl<'a> Design<'a> {
                 Some((block, signal, self.place(name, signal)))
             })
             .collect();
-        // The names of the same bit at the ports of other blocks have no driving line there.
-        places.sort_by_key(|(.., place)| !place.as_ref().is_some_and(|p| p.is_driver));
+        // The names of the same bit at the ports of other blocks have no driving line there, or only hand it on.
+        places.sort_by_key(|(.., place)| place.as_ref().map_or(Rank::Declaration, |p| p.rank));
         let (block, signal, place) = match places.into_iter().next() {
             Some(found) => found,
             None => {

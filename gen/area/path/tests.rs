@@ -201,3 +201,15 @@ fn report_without_a_path_between_registers_is_a_fault() {
         "{fault}"
     );
 }
+
+#[test]
+fn lines_that_hand_on_another_name_come_after_those_that_compute() {
+    let ranks = [
+        "done <= is_taken;",
+        "done = a & b;",
+        "assign done = done_now;",
+    ]
+    .map(Rank::of);
+    assert_eq!(ranks, [Rank::Value, Rank::Value, Rank::Copy]);
+    assert!(Rank::Value < Rank::Copy && Rank::Copy < Rank::Declaration);
+}
