@@ -231,7 +231,10 @@ fn campaigns_over_upsets_do_what_their_page_says() {
 #[ignore = "slow: measurements of the pages"]
 fn measurements_do_what_their_page_says() {
     let needed = ["iverilog", "verilator"];
-    try_long(&["bench cycle-time", "bench engines"], &needed);
+    try_long(
+        &["bench cycle-time", "bench engines", "bench latency"],
+        &needed,
+    );
 }
 
 /// What is talked to, or comes of it; `monitor` takes a terminal and `serve` a client, and both have tests of their own.

@@ -4,11 +4,13 @@
 
 mod cells;
 pub mod flows;
+mod path;
 mod report;
 mod speed;
 mod subject;
 
 pub use cells::{logic_cells, Packed};
+pub use path::{CriticalPath, Hop};
 pub use report::{report, Line, Peer, Report, Scope, PEERS};
 pub use speed::{speed, Device, Speed, DEVICES};
 pub use subject::{subjects, Subject};
@@ -134,11 +136,14 @@ pub(crate) fn read(path: &Path) -> Result<String, GenError> {
     std::fs::read_to_string(path).map_err(|e| GenError::io("read", path, &e, remedy))
 }
 
+/// True if the line holds only a comment.
+fn is_comment(line: &str) -> bool {
+    line.trim_start().starts_with("//")
+}
+
 /// The text without its lines of comment: yosys names cells by their lines, and what comes out depends a little on names.
 fn logic_of(verilog: &str) -> String {
-    let lines = verilog
-        .lines()
-        .filter(|l| !l.trim_start().starts_with("//"));
+    let lines = verilog.lines().filter(|l| !is_comment(l));
     lines.flat_map(|line| [line, "\n"]).collect()
 }
 

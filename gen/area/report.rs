@@ -74,6 +74,8 @@ pub struct Scope<'a> {
     pub only: &'a [String],
     /// Card and channel are also placed and routed.
     pub with_speed: bool,
+    /// Their worst paths are located, too.
+    pub with_path: bool,
     /// Folder in which the files of the tools remain.
     pub out: Option<&'a Path>,
 }
@@ -83,6 +85,7 @@ pub fn report(scope: &Scope, progress: &dyn Fn(&str)) -> Result<Report, GenError
     let Scope {
         only,
         with_speed,
+        with_path,
         out,
     } = *scope;
     let version = version()?;
@@ -110,7 +113,7 @@ pub fn report(scope: &Scope, progress: &dyn Fn(&str)) -> Result<Report, GenError
         let files = subject.files();
         let folder = out.unwrap_or(scratch.path()).join(subject.name);
         let usage = |family| synthesise(&folder, &files, subject.name, family).map(|s| s.usage);
-        let measure = |device: &Device| speed(&folder, &subject.design, &files, device);
+        let measure = |device: &Device| speed(&folder, &subject.design, &files, device, with_path);
         let fast = with_speed && ["card", "channel"].contains(&subject.name);
         let devices = DEVICES.iter().filter(|_| fast);
         lines.push(Line {
@@ -166,6 +169,9 @@ impl fmt::Display for Report {
                     s.min_mhz,
                     s.max_mhz
                 )?;
+                if let Some(path) = &s.path {
+                    write!(f, "{path}")?;
+                }
             }
         }
         let Some(channel) = self.lines.iter().find(|l| l.name == "channel") else {

@@ -3,6 +3,7 @@
 //! A block has more ports than a package has pins, so its ports hang on a harness: inputs on a shift register, outputs
 //! on registers that another shift register takes over. Every path of the block then begins and ends in a register.
 
+use super::path::{critical_path, CriticalPath};
 use super::{read, run, synthesise, Family, ECP5, ICE40};
 use crate::artifact::Artifact;
 use crate::error::GenError;
@@ -63,6 +64,9 @@ pub struct Speed {
     pub median_mhz: f64,
     /// Highest, in MHz.
     pub max_mhz: f64,
+    /// Worst path of the seed with the median; none unless asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<CriticalPath>,
 }
 
 /// The harness around the top module of a design.
@@ -108,21 +112,22 @@ endmodule
     Artifact::new("harness.v", text)
 }
 
-/// Places and routes the design with every seed.
+/// Places and routes the design with every seed; `with_path` adds the worst path.
 pub fn speed(
     folder: &Path,
     design: &Design,
     files: &[Artifact],
     device: &Device,
+    with_path: bool,
 ) -> Result<Speed, GenError> {
     let mut files = files.to_vec();
     files.push(harness(design));
-    let json = synthesise(folder, &files, "harness", &device.family)?.json;
+    let netlist = synthesise(folder, &files, "harness", &device.family)?.json;
     // The tools see their own folder for temporary files, so only names within this folder reach them.
-    let json = json.file_name().unwrap_or_default().to_string_lossy();
+    let json = netlist.file_name().unwrap_or_default().to_string_lossy();
     let mut found = vec![];
-    for seed in SEEDS {
-        let seed = seed.to_string();
+    for number in SEEDS {
+        let seed = number.to_string();
         let file = format!("{}-{seed}.report", device.family.name);
         let fixed = [
             "-q",
@@ -140,13 +145,22 @@ pub fn speed(
         let report: Value = serde_json::from_str(&read(&folder.join(&file))?).unwrap_or_default();
         let clocks = report["fmax"].as_object().into_iter().flatten();
         let slowest = clocks.filter_map(|(_, clock)| clock["achieved"].as_f64());
-        found.push(slowest.fold(f64::INFINITY, f64::min));
+        found.push((slowest.fold(f64::INFINITY, f64::min), number, report));
     }
-    found.sort_by(f64::total_cmp);
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (median_mhz, seed, report) = &found[found.len() / 2];
+    let path = match with_path {
+        true => {
+            let netlist = serde_json::from_str(&read(&netlist)?).unwrap_or_default();
+            Some(critical_path(*seed, report, &netlist, &files)?)
+        }
+        false => None,
+    };
     Ok(Speed {
         device: device.name,
-        min_mhz: found[0],
-        median_mhz: found[found.len() / 2],
-        max_mhz: found[found.len() - 1],
+        min_mhz: found[0].0,
+        median_mhz: *median_mhz,
+        max_mhz: found[found.len() - 1].0,
+        path,
     })
 }

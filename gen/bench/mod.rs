@@ -1,5 +1,5 @@
 //! Speed of the simulators: the card with its encoders, the same stimulus everywhere, results compared, all in one run. And the
-//! speed of the core itself, [`cycle_times`].
+//! speed of the core itself, [`cycle_times`] and [`latencies`].
 
 mod comparison;
 mod comparison_t_format;
@@ -8,6 +8,7 @@ mod cycle_time;
 mod design;
 mod frames;
 mod instructions;
+mod latency;
 mod measured;
 mod outside;
 mod preset_run;
@@ -17,6 +18,7 @@ mod stimulus;
 
 pub use comparison::{comparison, comparison_sample};
 pub use cycle_time::{cycle_times, CycleTime, CycleTimeOptions, CycleTimes, Published};
+pub use latency::{latencies, ChannelLatency, Latencies, LinkLatency, Span};
 pub use report::{Report, Row};
 pub use rust_engines::card_kernels;
 

@@ -13,6 +13,9 @@ pub struct AreaArgs {
     /// Also place and route card and channel: takes minutes
     #[arg(long)]
     fmax: bool,
+    /// Also print the worst path of the median seed: block, signal and line of the emitted text for each hop
+    #[arg(long, requires = "fmax")]
+    path: bool,
     /// Measure only these, by name
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     only: Vec<String>,
@@ -30,6 +33,7 @@ pub fn run(arguments: &AreaArgs) -> Result<Outcome, GenError> {
     let scope = area::Scope {
         only: &arguments.only,
         with_speed: arguments.fmax,
+        with_path: arguments.path,
         out: arguments.out.as_deref(),
     };
     let report = area::report(&scope, &|name| steps.begin(name))?;

@@ -24,6 +24,8 @@ enum What {
     Engines(EnginesArgs),
     /// Time from one position to the next, measured in simulation, beside the protocol's limit and published systems
     CycleTime(CycleTimeArgs),
+    /// Times from trigger to clock edge, from the last sample to the result, and from the result to a host at each link but the parallel bus, measured in simulation
+    Latency(LatencyArgs),
     /// The presets' runs beside what others have published, as the page docs/comparison.md
     Comparison,
 }
@@ -86,6 +88,13 @@ struct CycleTimeArgs {
     json: bool,
 }
 
+#[derive(Args)]
+struct LatencyArgs {
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
 /// Fewest cycles: the slow engines run a part of them.
 const CYCLES_MIN: u64 = 1000;
 /// Most cycles: a byte of stimulus is kept for each.
@@ -99,6 +108,7 @@ pub fn run(arguments: &BenchArgs) -> Result<Outcome, GenError> {
     match &arguments.what {
         What::Engines(arguments) => engines(arguments),
         What::CycleTime(arguments) => cycle_time(arguments),
+        What::Latency(arguments) => latency(arguments),
         What::Comparison => Ok(Outcome::good(bench::comparison()?)),
     }
 }
@@ -118,6 +128,19 @@ fn cycle_time(arguments: &CycleTimeArgs) -> Result<Outcome, GenError> {
         tcal_ns: number("--tcal-ns", &arguments.tcal_ns, 0..=TCAL_MAX_NS)?,
         tm_ns: number("--tm-ns", &arguments.tm_ns, recovery)?,
     })?;
+    Ok(Outcome {
+        stdout: if arguments.json {
+            to_json(&report)?
+        } else {
+            report.to_string()
+        },
+        exit_code: u8::from(!report.is_good()),
+        ..Outcome::default()
+    })
+}
+
+fn latency(arguments: &LatencyArgs) -> Result<Outcome, GenError> {
+    let report = bench::latencies()?;
     Ok(Outcome {
         stdout: if arguments.json {
             to_json(&report)?
