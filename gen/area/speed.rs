@@ -134,7 +134,7 @@ pub fn speed(
     let mut found = vec![];
     for number in SEEDS {
         let seed = number.to_string();
-        let file = format!("{}-{seed}.report", device.family.name);
+        let file = format!("{}-{seed}.report", device.name.replace(' ', "-"));
         let fixed = [
             "-q",
             "--json",

@@ -735,7 +735,7 @@ module s6_two_channel_transaction (
         `FORMAL_LABEL(one_result_per_trigger_lemma_once) assert (!answered | !verdict_is_pending | verdict_publishes | verdict_once_more | aborts);
         `FORMAL_LABEL(one_result_per_trigger_lemma_where) assert (!answered | aborts | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
         `FORMAL_LABEL(one_result_per_trigger_lemma_tail) assert ((phase != PHASE_TAIL) | verdict_is_pending | aborts);
-        `FORMAL_LABEL(one_result_per_trigger_lemma_sampled) assert (!tail_sampled | start_now | !f_in_frame | (phase == PHASE_RECOVERY));
+        `FORMAL_LABEL(one_result_per_trigger_lemma_sampled) assert (!tail_sampled | starting | !f_in_frame | (phase == PHASE_RECOVERY));
         `FORMAL_LABEL(one_result_per_trigger_lemma_proved) assert ((phase != PHASE_RECOVERY) | aborts | !owing | (tail_sampled ? answered | once_more | verdict_once_more : verdict_is_pending));
         `FORMAL_LABEL(one_result_per_trigger_lemma_told) assert (!answered | !owing | verdict_publishes | verdict_once_more | f_tells | aborts);
         `FORMAL_LABEL(one_result_per_trigger_lemma_result) assert (!(verdict_publishes | verdict_once_more) | answered | f_tells | aborts);

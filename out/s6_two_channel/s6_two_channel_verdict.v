@@ -208,7 +208,8 @@ module s6_two_channel_verdict (
             seen <= found & POSSIBLE;
             // A frame that is given up has that as its one result.
             prove_seen <= prove & is_pending & !was_given_up;
-            was_taken <= answer_taken;
+            // An answer that is complete in the cycle of an abort is not left pending for the next frame.
+            was_taken <= answer_taken & !was_given_up;
             was_given_up <= give_up & !was_given_up;
             // Nothing has been published of a frame that measured.
             gave_up_late <= give_up & !was_given_up & is_late & !measured;
