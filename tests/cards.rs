@@ -6,6 +6,7 @@ mod driver;
 #[allow(dead_code)] // other topics take the rest
 mod emitted;
 mod host;
+mod latency;
 mod made;
 mod own_triggers;
 mod presets;

@@ -4,9 +4,12 @@ use crate::program::good;
 use endat_hdl::endat::channel::{TAIL_SAMPLE_TO_RESULT_CYCLES, TRIGGER_TO_FIRST_FALL_CYCLES};
 use endat_sim::campaign::SAMPLE_LATENCY_CYCLES;
 use serde_json::Value;
+use std::sync::OnceLock;
 
-fn report() -> Value {
-    serde_json::from_str(&good(&["bench", "latency", "--json"])).unwrap()
+/// What the command prints, run once.
+fn report() -> &'static Value {
+    static REPORT: OnceLock<Value> = OnceLock::new();
+    REPORT.get_or_init(|| serde_json::from_str(&good(&["bench", "latency", "--json"])).unwrap())
 }
 
 fn page() -> String {
@@ -34,7 +37,7 @@ fn cycles(row: &Value, key: &str) -> f64 {
 #[test]
 fn measured_latencies_of_every_preset_are_the_constants() {
     let report = report();
-    let channels = rows(&report, "channels");
+    let channels = rows(report, "channels");
     assert!(channels.len() >= 7, "{channels:?}");
     assert_eq!(report["not_measured"], serde_json::json!([]));
     for row in channels {
@@ -47,7 +50,7 @@ fn measured_latencies_of_every_preset_are_the_constants() {
         assert_eq!(cycles(row, "pin_to_result"), pin + result, "{row}");
     }
     // Its filter takes 20 ns, two cycles.
-    let card = row(&report, "channels", "preset", "s6_two_channel");
+    let card = row(report, "channels", "preset", "s6_two_channel");
     let pin = cycles(card, "pin_to_sample");
     assert_eq!(pin, SAMPLE_LATENCY_CYCLES as f64 + 2.0);
 }
@@ -57,9 +60,9 @@ fn hosts_at_every_link_read_the_position_in_the_time_of_the_page() {
     let report = report();
     let page = page();
     let names = ["uart", "apb", "wishbone", "axi_lite", "ahb_lite", "spi"];
-    assert_eq!(rows(&report, "links").len(), names.len());
+    assert_eq!(rows(report, "links").len(), names.len());
     for name in names {
-        let row = row(&report, "links", "bus", name);
+        let row = row(report, "links", "bus", name);
         assert!(row["failure"].is_null(), "{row}");
         let host = cycles(row, "result_to_host");
         let ns = row["result_to_host"]["ns"].as_f64().unwrap();

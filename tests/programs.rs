@@ -8,7 +8,6 @@ mod commands;
 mod cycle_time;
 mod hosts;
 mod integrators;
-mod latency;
 #[allow(dead_code)] // other topics take the rest
 mod program;
 mod python;
