@@ -12,13 +12,13 @@ const SHORT_BITS: usize = 4;
 const BINARY_BITS: usize = 12;
 
 /// A line of a comment in ASCII: VHDL-93 is Latin-1, where other characters would be something else.
-pub(super) fn plain(line: &String) -> String {
+pub(super) fn plain(line: &str) -> String {
     let letters = line.chars().map(|c| if c.is_ascii() { c } else { '?' });
     letters.collect()
 }
 
 pub(super) fn comment(lines: &[String], pad: &str) -> String {
-    let lines: Vec<String> = lines.iter().map(plain).collect();
+    let lines: Vec<String> = lines.iter().map(|line| plain(line)).collect();
     crate::printing::comment(MARK, &lines, pad)
 }
 

@@ -164,7 +164,7 @@ keys! {
         .note("the host can change it (0 = none)").takes("error_test").of(CARD_FORM).usual(Usual::Number(ERROR_TEST_MS as u64));
     UPSET_GUARDS = Key::boolean(&["safety"], "upset_guards", "whether stored bits are checked, so that an upset of a register shows ([safety.md](safety.md#guards-against-upsets))")
         .note("a port takes some 100 LUTs and 100 flip-flops more; without them a host's check of the CRC finds upsets of the EnDat position that is shown, and \
-               4 per mille of all upsets show a wrong one as good (with guards 0.8)").usual(Usual::Boolean(false));
+               4 per mille of all upsets show a wrong one as good (with guards 0.6)").usual(Usual::Boolean(false));
     RESTORE = Key::boolean(&["safety"], "restore", "whether a port without bus shows the position before again when the encoder withdraws one")
         .note("behind every bus but `\"none\"` it always does; otherwise no position is valid then").of(CARD_FORM).usual(Usual::Boolean(false));
 

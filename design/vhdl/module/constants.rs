@@ -30,7 +30,7 @@ impl ModulePrinter<'_> {
             out.push_str(&with_comment(
                 MARK,
                 &line,
-                state.doc.map(plain).as_ref(),
+                state.doc.map(|line| plain(line)).as_ref(),
                 INDENT,
             ));
         }
