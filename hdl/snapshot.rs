@@ -101,7 +101,7 @@ pub struct Snapshot {
     is_fresh: Reg<Bit>,
     /// Number of results, wrapping.
     count: Reg<Bits<16>>,
-    /// Time stamp of the frame under way; from a result to the end of its frame that of the position before.
+    /// Time stamp of the frame under way; where the position before can come back, its stamp from a result to the end of the frame.
     stamp_pending: Reg<Bits<32>>,
     /// Time stamp of the published position.
     stamp: Reg<Bits<32>>,

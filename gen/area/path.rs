@@ -171,10 +171,13 @@ impl<'a> Design<'a> {
             .strip_suffix(']')
             .and_then(|net| net.rsplit_once('['))
             .and_then(|(name, index)| Some((name, index.parse::<usize>().ok()?)));
-        let (name, index) = indexed.unwrap_or((net, 0));
+        let name = indexed.map_or(net, |(name, _)| name);
         let bits = self.nets.get(name).and_then(|n| n["bits"].as_array());
         // Constant bits are text.
-        let bit = bits.and_then(|bits| bits.iter().skip(index).find(|bit| bit.is_u64()));
+        let bit = bits.and_then(|bits| match indexed {
+            Some((_, index)) => bits.get(index).filter(|bit| bit.is_u64()),
+            None => bits.iter().find(|bit| bit.is_u64()),
+        });
         let is_it = |value: &Value| {
             let bits = value["bits"].as_array();
             value["attributes"]["hdlname"].is_string()

@@ -209,6 +209,7 @@ fn channel(
         let falls = changes_to(&bench, clock, 0);
         let fall = falls.iter().find(|cycle| **cycle > triggered);
         let samples = changes_to(&bench, strobe, 1);
+        // The presets have four cycles or more in a bit: no cell ends between the deciding sample and its result.
         let sample = samples.iter().rfind(|cycle| **cycle <= result.cycle);
         to_fall.extend(fall.map(|fall| fall - triggered));
         to_result.extend(sample.map(|sample| result.cycle - sample));

@@ -40,7 +40,8 @@ use rust_hdl::prelude::*;
 
 /// From the cycle with the trigger strobe to the first cycle with the EnDat clock low, at every width and rate.
 pub const TRIGGER_TO_FIRST_FALL_CYCLES: u64 = 3;
-/// From the cycle in which the bit behind the last CRC bit is sampled to the one with the result strobe, at every width and rate.
+/// From the cycle in which the bit after the last CRC bit is sampled to the one with the result strobe, at every width and rate; one more
+/// where additional data follow.
 pub const TAIL_SAMPLE_TO_RESULT_CYCLES: u64 = 3;
 /// From the time in `first_fall_timestamp` to the first cycle with the EnDat clock low.
 pub const TIMESTAMP_TO_FIRST_FALL_CYCLES: u64 = 2;

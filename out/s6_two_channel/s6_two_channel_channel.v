@@ -382,7 +382,7 @@ module s6_two_channel_channel (
     // Outside of a command nothing is left to send, whatever a register says.
     assign sender_aborts = transaction_aborts | (!receiver_skipping & !transaction_start_supplement);
     assign receiver_level = filter_level;
-    // In fewer than four cycles additional data would begin before the position is taken.
+    // In fewer than four cycles additional data, or the next answer of a running clock, would begin before the position is taken.
     assign wanted_shape_command = command;
     // A trigger takes positions only, with a request or without: another command's answer is none, and may change the encoder.
     assign transaction_is_known = wanted_shape_is_position;

@@ -108,7 +108,7 @@ module s6_two_channel_snapshot (
     reg          is_fresh; initial is_fresh = 1'b0;
     // Number of results, wrapping.
     reg   [15:0] count; initial count = 16'd0;
-    // Time stamp of the frame under way; from a result to the end of its frame that of the position before.
+    // Time stamp of the frame under way; where the position before can come back, its stamp from a result to the end of the frame.
     reg   [31:0] stamp_pending; initial stamp_pending = 32'd0;
     // Time stamp of the published position.
     reg   [31:0] stamp; initial stamp = 32'd0;

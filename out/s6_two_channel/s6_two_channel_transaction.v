@@ -414,7 +414,7 @@ module s6_two_channel_transaction (
                 running = 1'b1;
                 in_us = 1'b1;
                 timer_clear = (hunting ^ was_hunting) | finished;
-                // A receiver that has lost its place. The timer of the hunt still shows in the cycle after it.
+                // A receiver that has lost its place. The timer of the hunt is still compared in the cycle after it.
                 if (endless & !hunting) begin
                     found = TAIL_LOW;
                     give_up = 1'b1;
@@ -637,8 +637,8 @@ module s6_two_channel_transaction (
                 timer <= 16'd3;
             end
             timer_limit <= limit;
-            // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its
-            // timer.
+            // Not less: a timer that was upset past its limit ends, too. While cleared is HIGH the timer is still that of the span
+            // before.
             timer_hit <= (timer >= timer_limit) & !cleared;
             cleared <= timer_clear | rise_back;
             if (timer_clear) begin
@@ -662,8 +662,8 @@ module s6_two_channel_transaction (
             was_hunting <= hunting;
             was_center <= center;
             plugged <= plugged_next;
-            // The timer follows a cycle later: whatever begins a span is registered first. It starts with the cycles that have
-            // passed by then, but for a wait for DATA, whose limit is as much shorter.
+            // The timer starts one cycle after the strobe that begins a span, with the cycles that have passed by then. Spans that
+            // start at 0 and count cycles have a limit that is one less.
             is_back <= rise_back & !aborts;
             // Whether the delay has to be measured again.
             high_at_tick <= high_at_tick & level;

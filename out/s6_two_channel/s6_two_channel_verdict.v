@@ -97,11 +97,11 @@ module s6_two_channel_verdict (
     wire         publishes_now;
     // High with proven if the answer has measured the delay: the position itself comes with another frame.
     wire         measured;
-    // Flags that came with the last strobe.
+    // Flags found in the cycle before.
     reg   [19:0] seen; initial seen = 20'd0;
-    // High for one cycle after prove, unless the frame was given up.
+    // High for one cycle after prove if an answer was pending and the frame was not given up.
     reg          prove_seen; initial prove_seen = 1'b0;
-    // answer_taken, one cycle later.
+    // answer_taken, one cycle later, unless the frame was given up.
     reg          was_taken; initial was_taken = 1'b0;
     // give_up, one cycle later; never in two cycles in a row.
     reg          was_given_up; initial was_given_up = 1'b0;

@@ -164,7 +164,7 @@ impl Logic for Channel {
         CellsOut::join(&mut self.delay.cells, &mut self.transaction.cells);
         connect!(self.transaction <= self.delay; center, delay_upset = is_upset);
         ProgressOut::join(&mut self.receiver.progress, &mut self.transaction.progress);
-        // In fewer than four cycles additional data would begin before the position is taken.
+        // In fewer than four cycles additional data, or the next answer of a running clock, would begin before the position is taken.
         self.wanted_shape.command.next = self.settings_in.command.val();
         if self.has_requests.val() {
             self.wanted_shape.command.next = self.frame_command.q.val();

@@ -164,15 +164,15 @@ impl Logic for Transaction {
             self.timer.d.next = self.timer.q.val() + 1;
         }
         self.timer_limit.d.next = self.limit.val();
-        // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
+        // Not less: a timer that was upset past its limit ends, too. While `cleared` is HIGH the timer is still that of the span before.
         self.timer_hit.d.next =
             (self.timer.q.val() >= self.timer_limit.q.val()) & !self.cleared.q.val();
         self.cleared.d.next = self.timer_clear.val() | self.rise_back.val();
         if self.timer_clear.val() {
             self.timer_hit.d.next = false;
         }
-        // The timer follows a cycle later: whatever begins a span is registered first. It starts with the cycles that have passed by then,
-        // but for a wait for DATA, whose limit is as much shorter.
+        // The timer starts one cycle after the strobe that begins a span, with the cycles that have passed by then. Spans that start at 0
+        // and count cycles have a limit that is one less.
         self.is_back.d.next = self.rise_back.val() & !self.verdict.gave_up.val();
         if self.cleared.q.val() {
             self.timer.d.next = 0.into();
@@ -214,7 +214,10 @@ impl Logic for Transaction {
         // Of a frame that measured nothing has been published.
         self.verdict.is_late.next =
             (self.answered.q.val() & !self.verdict.once_more.val()) | self.found_late.val();
-        connect!(self.verdict <= self; refuse, announce, normal_end, is_going = going, is_own = own);
+        connect!(self.verdict <= self; refuse, announce, normal_end, is_own = own);
+        // A run that is being left has measured no recovery time.
+        self.verdict.is_going.next =
+            self.going.val() | (self.leaving.q.val() & self.has_continuous.val());
         AnswerCheckIn::link(&mut self.check, &mut self.verdict.check);
         self.verdict.recovery_cycles.next = self.recovery.q.val();
         self.verdict.recovery_min_cycles.next = self.limits.recovery_min_cycles.val();
@@ -273,6 +276,7 @@ impl Logic for Transaction {
     fn begin_frame(&mut self) {
         if self.accept.val() {
             self.is_slow.d.next = !self.known.val();
+            self.late.d.next = false;
         }
         // A cycle later: the first clock edge has not come by then.
         if self.starting.q.val() {
@@ -283,7 +287,6 @@ impl Logic for Transaction {
             self.acquiring.d.next =
                 self.is_slow.q.val() & !(self.has_alignment.val() & self.passes.q.val().any());
             self.tail_sampled.d.next = false;
-            self.late.d.next = false;
         }
     }
 

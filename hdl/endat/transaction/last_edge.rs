@@ -55,7 +55,7 @@ pub struct LastEdge {
     pub in_supplement: Signal<In, Bit>,
     /// Strobe: the edge has come back, `ago_cycles` ago; again where it came later than expected.
     pub comes: Signal<Out, Bit>,
-    /// How long ago, in system clock cycles.
+    /// How long ago, in system clock cycles; stays for the cycle after `comes`.
     pub ago_cycles: Signal<Out, Bits<3>>,
     /// All pulses are sent.
     pub all_sent: Signal<Out, Bit>,

@@ -101,11 +101,11 @@ pub struct Verdict {
     trigger_overrun: Constant<Bits<20>>,
     too_short: Constant<Bits<20>>,
     stored_upset: Constant<Bits<20>>,
-    /// Flags that came with the last strobe.
+    /// Flags found in the cycle before.
     seen: Reg<Bits<20>>,
-    /// High for one cycle after `prove`, unless the frame was given up.
+    /// High for one cycle after `prove` if an answer was pending and the frame was not given up.
     prove_seen: Reg<Bit>,
-    /// `answer_taken`, one cycle later.
+    /// `answer_taken`, one cycle later, unless the frame was given up.
     was_taken: Reg<Bit>,
     /// `give_up`, one cycle later; never in two cycles in a row.
     was_given_up: Reg<Bit>,

@@ -65,6 +65,8 @@ impl Transaction {
         if self.vanished.val() {
             self.found.next = self.upset.val();
             self.give_up.next = true;
+            // A frame that began now would end with a second result.
+            self.accept.next = false;
         }
     }
 
@@ -86,7 +88,7 @@ impl Transaction {
         self.in_us.next = true;
         self.timer_clear.next =
             (self.progress.hunting.val() ^ self.was_hunting.q.val()) | self.progress.finished.val();
-        // A receiver that has lost its place. The timer of the hunt still shows in the cycle after it.
+        // A receiver that has lost its place. The timer of the hunt is still compared in the cycle after it.
         if self.endless.val()
             & !self.progress.hunting.val()
             & !(self.was_hunting.q.val() & self.has_all.val())
