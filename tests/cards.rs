@@ -6,7 +6,6 @@ mod driver;
 #[allow(dead_code)] // other topics take the rest
 mod emitted;
 mod host;
-mod latency;
 mod made;
 mod own_triggers;
 mod presets;

@@ -9,6 +9,7 @@ mod documents;
 mod emitted;
 mod files;
 mod house;
+mod latency;
 mod maps;
 mod packages;
 mod pages;

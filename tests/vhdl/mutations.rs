@@ -31,8 +31,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "payload a bit too long",
         "receiver",
-        "if left = 7 then",
-        "if left = 6 then",
+        "payload_ends <= to_sl(left = 7);",
+        "payload_ends <= to_sl(left = 6);",
     ),
     mutation(
         "F2 is not waited for",
