@@ -24,7 +24,7 @@ pub(crate) fn with_comment(mark: &str, code: &str, doc: Option<&String>, pad: &s
     }
 }
 
-/// `text` beside `begin`; its lines after the first one begin below the text.
+/// `text` after `begin`; its later lines begin in the column of the text.
 pub(crate) fn beside(begin: &str, text: &str) -> Vec<String> {
     let columns = begin.chars().count();
     // The longest mark and its space.
@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(wrapped(&text, 14), expected);
     }
 
-    /// Catches a line of its own that is taken for the end of a long one, a code line that is changed, and an end of a sentence that is left over.
+    /// Catches a separate line that is joined to a long one, a changed code line, and the end of a sentence that stays on a line by itself.
     #[test]
     fn long_comment_lines_of_a_text_are_wrapped() {
         let long = "word ".repeat(30);

@@ -1,4 +1,4 @@
-//! What a module is printed from: the registers of a clocked block, what statements read, constants.
+//! Parts that a printer reads of a module: registers of a clocked block, bits that statements read, constants.
 
 use crate::elaborate::{execute, Expr, ExprKind, Module, NetId, Register, Statement};
 use std::collections::{BTreeMap, BTreeSet};

@@ -124,8 +124,8 @@ fn hops_name_the_line_of_the_text_with_comments() {
     assert_eq!(texts[2], "owing <= receiver_done;");
 }
 
-#[test]
-fn signals_without_an_assignment_have_the_line_of_their_declaration() {
+/// Block, signal and line of a net of the netlist.
+fn hop_of(net: &str) -> Hop {
     let (netlist, files) = (netlist(), files());
     let nets = netlist["modules"]["harness"]["netnames"]
         .as_object()
@@ -134,24 +134,21 @@ fn signals_without_an_assignment_have_the_line_of_their_declaration() {
         nets,
         files: &files,
     };
-    let hop = design.hop(0.0, "dut.u_receiver.from_part").unwrap();
+    design.hop(0.0, net).unwrap()
+}
+
+#[test]
+fn signals_without_an_assignment_have_the_line_of_their_declaration() {
+    let hop = hop_of("dut.u_receiver.from_part");
     assert_eq!(hop.line.as_deref(), Some("receiver.v:11"));
     assert_eq!(hop.text.as_deref(), Some("wire from_part;"));
-    let unknown = design.hop(0.0, "dut.u_other.x_SB_LUT4_O").unwrap();
+    let unknown = hop_of("dut.u_other.x_SB_LUT4_O");
     assert_eq!((unknown.line, unknown.text), (None, None));
 }
 
 #[test]
 fn registers_named_after_a_port_have_the_name_in_their_block() {
-    let (netlist, files) = (netlist(), files());
-    let nets = netlist["modules"]["harness"]["netnames"]
-        .as_object()
-        .unwrap();
-    let design = Design {
-        nets,
-        files: &files,
-    };
-    let hop = design.hop(0.0, "dut.receiver_done_SB_DFF_Q_DFFLC").unwrap();
+    let hop = hop_of("dut.receiver_done_SB_DFF_Q_DFFLC");
     assert_eq!((&*hop.block, &*hop.signal), ("u_receiver", "done"));
     assert_eq!(hop.line.as_deref(), Some("receiver.v:12"));
 }
