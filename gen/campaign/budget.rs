@@ -88,7 +88,7 @@ const SSI_TWICE: &str = "ssi_port position_twice";
 pub const BUDGETS: [Budget; 26] = [
     Budget {
         campaign: "upsets",
-        what: "wrong positions told as good",
+        what: "wrong positions reported as good",
         bad: |r| r.class == "silent" && is_guarded(r),
         of: |r| is_case(r) && is_guarded(r),
         limit_per_mille: 1.0,
@@ -112,7 +112,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "upsets",
-        what: "wrong positions of the card told as good",
+        what: "wrong positions of the card reported as good",
         bad: |r| r.class == "silent" && is_card(r),
         of: |r| is_case(r) && is_card(r),
         limit_per_mille: 1.0,
@@ -120,7 +120,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "upsets",
-        what: "wrong positions of the T-format port told as good",
+        what: "wrong positions of the T-format port reported as good",
         bad: |r| r.class == "silent" && of_port(r, t_format::SUBJECT),
         of: |r| is_case(r) && of_port(r, t_format::SUBJECT),
         limit_per_mille: 5.0,
@@ -128,7 +128,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "upsets",
-        what: "wrong positions of the SSI port told as good",
+        what: "wrong positions of the SSI port reported as good",
         bad: |r| r.class == "silent" && of_port(r, ssi::SUBJECT),
         of: |r| is_case(r) && of_port(r, ssi::SUBJECT),
         limit_per_mille: 5.0,
@@ -136,7 +136,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "upsets",
-        what: "wrong positions of the SSI port with special bits told as good",
+        what: "wrong positions of the SSI port with special bits reported as good",
         bad: |r| r.class == "silent" && of_port(r, ssi::SUBJECT_SPECIAL),
         of: |r| is_case(r) && of_port(r, ssi::SUBJECT_SPECIAL),
         limit_per_mille: 5.0,
@@ -176,7 +176,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "faults",
-        what: "wrong positions told as good, of those and the CRC errors",
+        what: "wrong positions reported as good, share of these and the CRC errors",
         bad: |r| r.class == "silent" && !is_other(r),
         of: is_crc_or_silent,
         limit_per_mille: CRC_BOUND_PER_MILLE,
@@ -184,7 +184,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "faults",
-        what: "wrong positions of the T-format port told as good",
+        what: "wrong positions of the T-format port reported as good",
         bad: |r| r.class == "silent" && of_port(r, t_format::SUBJECT),
         of: |r| is_case(r) && of_port(r, t_format::SUBJECT),
         limit_per_mille: 5.0,
@@ -192,7 +192,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "faults",
-        what: "wrong positions of the SSI port with two copies told as good",
+        what: "wrong positions of the SSI port with two copies reported as good",
         bad: |r| r.class == "silent" && r.subject == SSI_TWICE,
         of: |r| is_case(r) && r.subject == SSI_TWICE,
         limit_per_mille: 5.0,
@@ -216,7 +216,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "garbage",
-        what: "wrong positions told as good, of those and the CRC errors",
+        what: "wrong positions reported as good, share of these and the CRC errors",
         bad: |r| r.class == "silent" && !is_setting(r) && !is_other(r),
         of: is_crc_or_silent,
         limit_per_mille: CRC_BOUND_PER_MILLE,
@@ -224,7 +224,7 @@ pub const BUDGETS: [Budget; 26] = [
     },
     Budget {
         campaign: "garbage",
-        what: "wrong positions told as good after a setting has changed",
+        what: "wrong positions reported as good after a setting has changed",
         bad: |r| r.class == "silent" && is_setting(r) && !is_other(r),
         of: |r| is_case(r) && is_setting(r) && !is_other(r),
         limit_per_mille: 0.0,

@@ -1,4 +1,4 @@
-//! The upsets by element, as a fault analysis (FMEDA) asks for them: what is safe, what is told, what nothing tells.
+//! The upsets by element, as a fault analysis (FMEDA) asks for them: what is safe, what is reported, what nothing reports.
 
 use super::card::{in_channel, CardSubject};
 use super::report::{block, flips, grouped, Counts};
@@ -6,15 +6,15 @@ use endat_sim::campaign::port::Class;
 use endat_sim::campaign::{Row, Tally};
 use std::fmt::Write;
 
-/// An element: how its blocks begin, what it is, and what tells an upset of it.
+/// An element: prefixes of its blocks, its name, and the check that reports an upset in it.
 struct Element(&'static [&'static str], &'static str, &'static str);
 
 const PORT: &str = "port_all";
 
-/// Those of a port, and of a channel of a card. Every block is in the first that fits.
+/// Elements of a port, and of a channel of a card. A block belongs to the first element with a matching prefix.
 #[rustfmt::skip]
 const OF_PORT: &[Element] = &[
-    Element(&["clock_gen", "sender"], "clock and mode command", "the encoder's answer: start bit, CRC, state of the line behind the frame"),
+    Element(&["clock_gen", "sender"], "clock and mode command", "the encoder's answer: start bit, CRC, state of the line after the frame"),
     Element(&["receiver.check", "receiver.serial"], "the two CRCs", "each other"),
     Element(&["receiver", "add_info"], "receiver", "CRC in parallel and serially, state of the line"),
     Element(&["second"], "second receiver", "the first one"),
@@ -25,22 +25,22 @@ const OF_PORT: &[Element] = &[
     Element(&["(top)"], "wiring of the channel", "CRC, causes"),
 ];
 
-/// Those of a card around its channels.
+/// Elements of a card outside its channels.
 #[rustfmt::skip]
 const OF_CARD: &[Element] = &[
-    Element(&["bridge"], "UART link", "no answer, bytes that nobody asked for; of the address: nothing"),
-    Element(&["core.bank.ring", "core.registers_0.ring", "core.registers_1.ring"], "configuration", "ring with parity, told in every result"),
+    Element(&["bridge"], "UART link", "no answer, unrequested bytes; an upset of the address: nothing"),
+    Element(&["core.bank.ring", "core.registers_0.ring", "core.registers_1.ring"], "configuration", "parity on the ring, reported in every result"),
     Element(&["core.bank", "core.registers"], "register bank, results for the host", "CRC5 of the position, stale"),
     Element(&["core.whole"], "results with additional data", "CRC5 of the position"),
     Element(&["core.set", "core.stream"], "stream", "parity of each set, CRC-16 of each frame, count of triggers"),
     Element(&["core.service", "core.port"], "services", "answer of the encoder, its state"),
     Element(&["core.trigger"], "trigger", "count of triggers"),
-    Element(&["core.timebase"], "time base", "nothing: time stamps are another moment's"),
+    Element(&["core.timebase"], "time base", "nothing: time stamps are wrong"),
     Element(&["core.second", "core.record"], "second interface", "CRC-16 of each channel, CRC5 of the position, count of answers"),
-    Element(&["core.recovery"], "recovery counter", "limits of the control that reads it; not read here"),
+    Element(&["core.recovery"], "recovery counter", "limits of the control that reads it; not read in the campaign"),
 ];
 
-/// The element that a register is in, of the subjects that are told by element.
+/// The element that a register is in; none if its subject is not sorted by element.
 fn element(row: &Row) -> Option<&'static Element> {
     let (elements, block) = match (row.subject.as_str(), CardSubject::named(&row.subject)) {
         (PORT, _) => (OF_PORT, block(&row.place)),
@@ -62,7 +62,7 @@ fn percent(part: u64, all: u64) -> String {
     }
 }
 
-fn line(text: &mut String, subject: &str, name: &str, counts: &Counts, told_by: &str) {
+fn line(text: &mut String, subject: &str, name: &str, counts: &Counts, reported_by: &str) {
     let of = |class: Class| counts.get(class.name()).copied().unwrap_or(0);
     let all = flips(counts);
     let (masked, silent) = (of(Class::Masked), of(Class::Silent));
@@ -70,7 +70,7 @@ fn line(text: &mut String, subject: &str, name: &str, counts: &Counts, told_by: 
     let acting = all - masked;
     let _ = writeln!(
         text,
-        "| {subject} | {name} | {all} | {} | {} | {} | {} | {} | {} | {told_by} |",
+        "| {subject} | {name} | {all} | {} | {} | {} | {} | {} | {} | {reported_by} |",
         percent(masked, all),
         percent(of(Class::Detected), all),
         percent(other, all),
@@ -83,7 +83,7 @@ fn line(text: &mut String, subject: &str, name: &str, counts: &Counts, told_by: 
 /// The table: a line for each element of the port with everything and of the cards, and their sums.
 pub fn table(tally: &Tally) -> String {
     let mut text = String::from(
-        "| subject | element | upsets | safe, % | told, % | other, % | wrong position told as good, % | told of those that are not safe, % | without a wrong position, of the same, % | told by |\n\
+        "| subject | element | upsets | safe, % | reported, % | other, % | wrong position reported as good, % | reported, share of unsafe, % | no wrong position, share of unsafe, % | reported by |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut sums = String::new();
@@ -96,9 +96,9 @@ pub fn table(tally: &Tally) -> String {
             false => None,
         };
         let groups = grouped(tally, of);
-        for Element(_, name, told_by) in OF_PORT.iter().chain(OF_CARD) {
+        for Element(_, name, reported_by) in OF_PORT.iter().chain(OF_CARD) {
             if let Some(counts) = groups.get(&Some(*name)) {
-                line(&mut text, subject, name, counts, told_by);
+                line(&mut text, subject, name, counts, reported_by);
             }
         }
         let all = grouped(tally, |r| of(r).is_some());

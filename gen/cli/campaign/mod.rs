@@ -56,6 +56,9 @@ pub struct CampaignArgs {
     /// Of those that count, and merge: write the counts as CSV
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Of page: print all tables (campaigns/results/tables.md) instead of the page
+    #[arg(long)]
+    tables: bool,
     #[command(flatten)]
     threads: ThreadsArgs,
     /// Run only this case, alone
@@ -92,7 +95,7 @@ enum Name {
     Configurations,
     /// Put the parts of one campaign together
     Merge,
-    /// The page docs/reliability.md, from the files of whole campaigns; docs/mutants.md, from that of mutants
+    /// The page docs/reliability.md, from the files of whole campaigns; docs/mutants.md, from those of mutants
     Page,
 }
 

@@ -13,7 +13,7 @@ const RUNNING: &[Name] = &[Sweep, Random, Upsets, Faults, Garbage, Accept, Confi
 
 impl CampaignArgs {
     /// Each option that is not of every campaign: whether it is there, and whose it is.
-    fn options(&self) -> [(&'static str, bool, &'static [Name]); 15] {
+    fn options(&self) -> [(&'static str, bool, &'static [Name]); 16] {
         [
             ("PART", !self.parts.is_empty(), &[Merge, Page]),
             (
@@ -49,6 +49,7 @@ impl CampaignArgs {
                     Merge,
                 ],
             ),
+            ("--tables", self.tables, &[Page]),
             ("--threads", self.threads.is_given(), RUNNING),
             (
                 "--case",

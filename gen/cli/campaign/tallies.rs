@@ -43,6 +43,7 @@ pub fn run(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
             let parts = parts.collect::<Result<Vec<_>, _>>()?;
             Ok(Outcome::good(match &parts[..] {
                 [first, ..] if first.identity.campaign == NAME => page_of_mutants(&parts)?,
+                parts if arguments.tables => page::tables(parts)?,
                 parts => page::page(parts)?,
             }))
         }
