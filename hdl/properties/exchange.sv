@@ -1,7 +1,7 @@
 // driver_only: The driver is on only while a request is being sent.
 // refused_unless_quiet: A request begins only for a trigger, if it is known, and the line is HIGH and has been quiet since a reply that did not come whole.
 // quiet_after_reset: After a reset no request begins for 63 us, the longest pause before a reply, and then only when the line is at rest.
-// one_verdict: A trigger that meets no exchange has exactly one verdict, and there is none without.
+// one_verdict: A trigger outside an exchange has exactly one verdict, and no verdict comes without a trigger.
 // request_as_asked: A request is a LOW start bit, sync code, ID and parity, and a HIGH delimiter; after the request the line is HIGH.
 // header_as_asked: A reply is good only if its first eight bits are the sync code, the ID of the request and the right parity; without guards as long as that ID stays.
 // sum_as_received: A reply is good only if its bytes as sampled, the CRC among them, come to 0.

@@ -1,4 +1,4 @@
-// settings_held: What the frame on the wire is received with changes only while nothing is on the wire.
+// settings_held: The settings that receive a frame change only while nothing is on the wire.
 reg f_past_valid; initial f_past_valid = 1'b0;
 always @(posedge clock) begin
     f_past_valid <= 1'b1;

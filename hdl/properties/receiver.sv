@@ -1,6 +1,6 @@
-// crc_as_received: The CRC of a frame that is all position is found right exactly if it is what a serial register makes of the bits as sampled, at every width and command.
+// crc_as_received: The CRC of a frame that is all position is reported right exactly if a serial register gets the same result from the sampled bits, at every width and command.
 // error_bits_as_received: F1, and F2 of EnDat 2.2, are the first samples after the start bit of a frame that is all position.
-// bits_counted: A frame that is all position is whole after F1, F2, as many position bits as were set and five CRC bits: no sample more or less.
+// bits_counted: A frame that is all position ends after F1, F2, the configured number of position bits and five CRC bits: no sample more or less.
 reg f_same; initial f_same = 1'b0;
 reg f_open; initial f_open = 1'b0;
 reg f_whole; initial f_whole = 1'b0;
@@ -108,7 +108,7 @@ always @* begin
     end
 end
 // with SWAPS
-// word_kept: The position that the receiver is given behind a frame stays in it until the next frame.
+// word_kept: The position that the receiver gets after a frame stays in it until the next frame.
 reg [52:0] f_given;
 reg f_keeps; initial f_keeps = 1'b0;
 always @(posedge clock) begin

@@ -6,7 +6,7 @@ always @* begin
     special_is_found: assert (found[10:8] == (heard ? f_bad | bad_before : 3'd0));
 end
 // with HAS_GUARDS
-// special_as_it_came: The special bits that are stored are those that came: their sum is that of the bits as they were taken.
+// special_as_it_came: The stored special bits are the received ones: both have the same sum.
 always @*
     special_as_it_came: assert ((^status) == sum);
 // end

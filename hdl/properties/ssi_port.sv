@@ -1,6 +1,6 @@
 // rests_high: The clock is HIGH whenever no frame is under way, after its last rising edge and within the recovery time.
-// one_result: A trigger that meets no frame has exactly one result, and there is none without.
-// only_on_high: The clock falls for the first time only for a trigger, with DATA HIGH and a kind of frame that may go out.
+// one_result: A trigger outside a frame has exactly one result, and no result comes without a trigger.
+// only_on_high: The clock falls for the first time only for a trigger, with DATA HIGH and a kind of frame that is allowed.
 // waits_after_reset: After a reset, and after a frame at whose end DATA was HIGH, no frame begins before the longest recovery time is over, whatever DATA is.
 // good_is_whole: A position is taken only if DATA was HIGH before the frame and LOW after it, all bits have come, its parity bit fits, and both copies are the same.
 // withdrawn: If DATA is still LOW when the longest recovery time is over, no position is valid, and there is a cause. A frame that brought none withdraws none.
@@ -37,8 +37,8 @@ always @* begin
     good_is_whole: assert (!snapshot_good | (!not_high & !not_low & !unknown & !not_even & (left == 6'd0) & (second == frame[1]) & (!frame[1] | (word == again))));
 end
 // with HAS_GUARDS
-// counted_twice: Both counts of bits are the same, and so are both notes of the edge that takes none.
-// as_it_came: What is stored is what came: the sum of its bits is that of the bits as they were taken, unless there were more than 48.
+// counted_twice: Both counts of bits are equal, and so are both marks of the edge that brings no bit.
+// as_it_came: The stored bits are the received bits: both have the same sum, unless there were more than 48.
 reg f_full; initial f_full = 1'b0;
 always @(posedge clock) begin
     if (takes_bit & !is_parity & !second & word[47]) f_full <= 1'b1;

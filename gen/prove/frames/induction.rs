@@ -45,7 +45,7 @@ impl Induction<'_> {
     pub fn run(&mut self) -> Result<(), Stop> {
         let registers = self.netlist.registers.iter();
         let start: State = registers.map(|r| self.start(r)).collect();
-        let (ready, _) = self.all(Run::PowerUp, "power-up", &start)?;
+        let (ready, _) = self.all(Run::PowerUp, "the run from power-up", &start)?;
         let (ready, _) = self.closed(&[(Run::Wait, "a wait for the first trigger")], ready)?;
         let (mut rest, cycles) = self.all(Run::Frame, "the first frame", &ready)?;
         self.frame_cycles[0] = cycles;

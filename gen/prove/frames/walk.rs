@@ -111,7 +111,11 @@ impl Walk<'_> {
             }
             let busy = self.one("busy")?;
             let Some(is_busy) = busy.level() else {
-                return Ok(self.breaks("whether it waits depends on data", &[busy, !busy], cycle));
+                return Ok(self.breaks(
+                    "whether the channel waits depends on data",
+                    &[busy, !busy],
+                    cycle,
+                ));
             };
             // A trigger that meets a frame is lost, and changes nothing but that this is told.
             let trigger = match (cycle, is_busy) {
@@ -135,7 +139,7 @@ impl Walk<'_> {
             }
             self.clock()?;
         }
-        Ok(self.breaks("no end of it", &[Form::HIGH], limit))
+        Ok(self.breaks("the frame does not end", &[Form::HIGH], limit))
     }
 
     fn end(&mut self, run: Run, has_result: bool, cycle: u64) -> Result<End, String> {

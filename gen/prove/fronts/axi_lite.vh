@@ -1,16 +1,16 @@
-// b_stands: A write answer stands until it is taken.
-// r_stands: A read answer stands, with its word, until it is taken.
-// b_is_asked: A write answer comes only for an address and a word that have been taken.
-// r_is_asked: A read answer comes only for an address that has been taken.
+// b_stands: A write answer stays valid until it is accepted.
+// r_stands: A read answer and its word stay valid until they are accepted.
+// b_is_asked: A write answer comes only for an address and a word that were accepted.
+// r_is_asked: A read answer comes only for an address that was accepted.
 // writes_the_oldest: The bank writes for the oldest request, once, while it has no answer.
-// writes_what_was_asked: A written word and its address are those of the oldest request, with all byte strobes.
+// writes_what_was_asked: A written word and its address are those of the oldest request, with all byte strobes set.
 // reads_the_oldest: The bank reads for the oldest request, while it has no answer.
 // bytes_in_order: The bytes of a word are read in their order, each once.
-// okay_is_written: OKAY means written, or that no strobe was set.
-// refused_is_not: An error is SLVERR, for some of the strobes, and nothing was written.
-// read_is_what_the_bank_gave: A read brings the four bytes that the bank gave.
+// okay_is_written: OKAY means that the word was written, or that no strobe was set.
+// refused_is_not: An error is SLVERR, comes if only some strobes are set, and nothing was written.
+// read_is_what_the_bank_gave: A read returns the four bytes of the bank.
 // write_answers_in_time: A write is answered within 60 cycles, if the bank answers each access within four: it waits for one read at most.
-// read_answers_in_time: A read is answered within 60 cycles, likewise.
+// read_answers_in_time: A read is answered within 60 cycles, under the same condition.
     // A master within the rules: what it offers stands until it is taken.
     reg p_past = 0;
     reg p_aw = 0, p_w = 0, p_ar = 0, p_b = 0, p_r = 0;

@@ -1,6 +1,6 @@
 // bank_one_at_a_time: The bank has one access at a time.
-// bank_address_stands: Address and direction stand until the bank is done.
-// bank_address_in_time: Address and direction stand a cycle before the access.
+// bank_address_stands: Address and direction are stable until the bank is done.
+// bank_address_in_time: Address and direction are stable one cycle before the access.
     // The bank: an answer to each access, at once or a few cycles later.
     reg f_busy = 0;
     reg [10:0] f_address = 0;

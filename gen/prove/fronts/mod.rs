@@ -19,7 +19,7 @@ const INSIDE: &str = "    // What holds between front, word and bank";
 const INSIDE_NAME: &str = "holds_inside";
 /// Its words.
 const INSIDE_WORDS: &str =
-    "What front, word and bank hold fits together in every cycle; the others lean on it.";
+    "The registers of front, word access and bank are consistent in every cycle; the other proofs rely on it.";
 /// Cycles that a step of the induction looks back over, and that its base has.
 const DEPTH: usize = 5;
 /// The same for waits: deeper than the longest one.

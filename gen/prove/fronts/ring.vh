@@ -1,5 +1,5 @@
-// ring_is_home: Between accesses the ring of configuration words is where it was.
-// begins_at_home: An access begins with the ring at home, whatever the front says.
+// ring_is_home: Between accesses the ring of configuration words is in its start position.
+// begins_at_home: An access begins with the ring in its start position, whatever the front does.
     // Everything that a front can say is free, and changes in every cycle. Bytes that the ring has moved on, up to a whole turn.
     reg [8:0] f_steps = 0;
     localparam [8:0] WHOLE = 12 * BLOCKS;

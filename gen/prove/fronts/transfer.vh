@@ -1,10 +1,10 @@
-// does_what_was_asked: The bank gets the address and the direction of the transfer that is under way.
+// does_what_was_asked: The bank gets address and direction of the current transfer.
 // writes_the_word: A written word is the one of the transfer.
 // bytes_in_order: The bytes of a word are read in their order, each once.
-// answer_has_been_done: A transfer is answered without an error only when the bank has done it, and when it may be done.
-// read_is_what_the_bank_gave: A read brings the four bytes that the bank gave.
-// error_does_nothing: A transfer that ends with an error has done nothing, and is one that is refused.
-// no_answer_without_a_transfer: There is no answer while nothing was asked a cycle ago.
+// answer_has_been_done: A transfer ends without an error only if it is allowed and the bank has done it.
+// read_is_what_the_bank_gave: A read returns the four bytes of the bank.
+// error_does_nothing: A transfer that ends with an error is a refused one, and changes nothing.
+// no_answer_without_a_transfer: No answer comes unless a transfer was requested in the cycle before.
 // one_cycle_of_answer: An answer lasts one cycle.
 // answers_in_time: A transfer is answered within 50 cycles, if the bank answers each access within four.
     // The bank has begun what this transfer asks for; the last byte of it; the bytes that it gave.
