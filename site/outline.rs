@@ -71,7 +71,6 @@ pub const OUTLINE: [Part; 6] = [
             "stream",
             "size",
             "works-with",
-            "artinchip-status",
         ],
     },
     Part {

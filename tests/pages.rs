@@ -370,7 +370,7 @@ fn names_in_the_programming_guide_are_those_of_the_registers() {
 
 #[test]
 fn the_table_for_artinchip_s_drivers_names_the_commands_that_are_not_watched() {
-    let page = include_str!("../docs/artinchip-status.md");
+    let page = include_str!("../docs/comparison.md");
     let row = row(page, "| WDG |").join(" ");
     // `the_watchdog_leaves_three_commands_alone` shows it.
     let theirs = ["101010", "100011", "011100"];

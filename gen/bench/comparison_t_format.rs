@@ -57,6 +57,6 @@ pub(super) fn asynchronous() -> Result<Table, GenError> {
         "data 4 clocks after the address, held for 5",
         "the same",
     );
-    table.note("What is read after which disturbance, and how many frames that was tried with: [t-format.md](t-format.md).");
+    table.note("Tolerances and tested frames: [t-format.md](t-format.md#on-the-line).");
     Ok(table)
 }

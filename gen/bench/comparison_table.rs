@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Where what stands on our side is from.
+/// Source of a figure on our side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
     /// A run that wrote the page.
@@ -11,7 +11,7 @@ pub enum Basis {
     Synthesis,
     /// A constant of the description that the core is made from.
     Description,
-    /// Words: what the linked pages and the tests show.
+    /// Words, which the linked pages and the tests show.
     Words,
 }
 
@@ -27,9 +27,19 @@ impl Basis {
     }
 }
 
-/// What the column of a basis says.
-pub const LEGEND: &str = "Of each row the last column tells where the right side is from: *measured* in a run that wrote this page; *synthesis*: a figure that a test compares with the tools; \
-    *description*: a constant that the core is made from; *words*: for these the linked pages and the tests stand.";
+/// What the page says before its tables.
+pub const HEAD: &str = "# Comparison
+
+Published systems, and the same work with this core. `cargo run --release -- bench comparison > docs/comparison.md` writes this page from runs of the presets with encoder models, and a test compares it. \
+Sampling rate and initialisation differ from the presets. The lines have the delay of a cable, not its attenuation; EnDat allows 150 m. A dash means: not published. The last column is the source of the figure on our side:
+
+- *measured*: in a run that wrote this page
+- *synthesis*: a figure that a test compares with the tools
+- *description*: a constant of the source
+- *words*: the linked pages and the tests show it
+";
+/// What the page says after its tables.
+pub const STATUS: &str = include_str!("endat_if_status.md");
 
 /// A table of the page.
 pub struct Table {
@@ -68,7 +78,7 @@ impl Table {
         self.row(Basis::Words, what, theirs, ours);
     }
 
-    /// What stands below it.
+    /// The text below the table.
     pub fn note(&mut self, text: impl Into<String>) {
         self.notes = text.into();
     }
