@@ -10,7 +10,7 @@ use std::fmt::Write;
 /// What the page says before the campaigns.
 const HEAD: &str = "# Reliability
 
-This page counts what happens to a port, and to a whole card, when a stored bit flips, the line is disturbed or a frame is wrong. \
+What happens to a port, or a whole card, when a stored bit flips, the line is disturbed or a frame is wrong? \
 Every figure is from simulation, with encoder models on lines. [campaigns.md](campaigns.md) says how to run the campaigns.
 
 - Results: `campaigns/results/*.csv`.
@@ -63,7 +63,7 @@ A model host follows [host-link.md](host-link.md), [stream.md](stream.md) and [p
 
 Then the host triggers until two rounds in a row are good, and reads the configuration back. After *idle* and *request* it also asks both services for a parameter.
 
-- *detected* on a card: a cause, no answer, unrequested bytes, a wrong CRC, a damaged or missing frame of the stream, a stale result, a skipped number or a refused request.
+- *detected* on a card: a cause, no answer, unrequested bytes, a wrong CRC, a damaged or missing stream frame, a stale result, a skipped number, a refused request.
 - *lost* on a card: a trigger without a result or without a set. *silent_other*: a wrong time stamp, a wrong answer or a changed configuration.
 - The host opens the connection again after four triggers without two good ones, or after three reads without an answer. It then writes its configuration again.
 - *hang* on a card: no good result in 8 triggers after that, nor in 8 more after 60 ms of rest; or a service that fails four requests, and one more after 60 ms.
@@ -100,7 +100,7 @@ fn title(part: &Part) -> Option<(&'static str, &'static str)> {
         "upsets" => ("Upsets", "A case inverts one flip-flop at one moment of a frame, or of an activity of the card. System clock 32 MHz, 8 cycles per bit, 25 bits, 20 m."),
         "faults" => ("Faults of the line", "A fault begins in the frame (on), or ends in it (off), at every quarter of a bit, with each recovery time tm (000111: from 10 us) and cable. The T-format port and the SSI port have a line without delay, and their own faults. A single SSI position has no check sum."),
         "garbage" => ("Spoilt frames", "One spoilt frame in each case, at random. For the T-format port and the SSI port the encoder, the line or a setting is wrong. A random word passes a CRC of 5 bits with a chance of 1 in 32; with F1 and F2, 1 in 128."),
-        "accept" => ("Accept set", "Every word that encoders of 1 to 13 bits can send, with error bits and CRC, against a predicate that shares no code with the core."),
+        "accept" => ("Accept set", "Every word that encoders of 1 to 13 bits can send, with error bits and CRC. A predicate that shares no code with the core decides."),
         _ => return None,
     })
 }

@@ -37,7 +37,7 @@ The condition of a property is the part before its assertion, such as `if (a)` o
 - **From the start values**: from configuration of the FPGA on, without a time limit. The proof is an induction over four cycles.
 - **From any state**: from any register contents, for example after an upset.
 - **Together.** The properties of a part are proved together, so one can rely on another in earlier cycles. `holds_inside` exists only for that.
-- **Bus fronts** are proved for every master that follows the rules of AXI4-Lite, APB, Wishbone or AHB-Lite, with a register bank that answers within four cycles.
+- **Bus fronts** (AXI4-Lite, APB, Wishbone, AHB-Lite) are proved for every master that follows the rules of its bus. The register bank answers within four cycles.
 - `known_after_reset` is checked in the synthesised gates of a channel, not in a module. A test proves for all flags that the cause of the highest rank wins (`tests/verilog/formal.rs`).
 
 Each property rejects cores that are broken on purpose (`tests/prove/mutations.rs`).
@@ -83,7 +83,7 @@ The command starts frames in 16 phases of the microsecond, evenly spread, or in 
 
 `VIOLATED` means that a run with chosen data does this; `--out DIR` writes it as waveform and drawing. `NOT PROVED` means that the prover found no such run, and could not exclude one.
 
-**Limits.** Settings, tcal (5 us), tm (11 us) and delay are those of the row. The encoder is `gen/prove/frames/encoder.sv`, written separately from the core. The additional data are selected already, and their warning bit is LOW. Undriven DATA can be anything in every cycle, or LOW (`--undriven low`). Only LOW is proved with an input filter, which counts samples of the undriven line, and with a cable so long that the receiver listens before the encoder drives. With an input filter the command selects LOW itself. Edges come where they are expected, so a tracked phase (*edges*) stays. Jitter, a changing delay, requests, continuous clock and cards without start values are outside.
+**Limits.** Settings, tcal (5 us), tm (11 us) and delay are those of the row. The encoder is `gen/prove/frames/encoder.sv`, written separately from the core. The additional data are selected already, and their warning bit is LOW. Undriven DATA can be anything in every cycle, or LOW (`--undriven low`). Two cases are proved only with LOW: an input filter, which counts samples of the undriven line, and a cable so long that the receiver listens before the encoder drives. With an input filter the command selects LOW itself. Edges come where they are expected, so a tracked phase (*edges*) stays. Jitter, a changing delay, requests, continuous clock and cards without start values are outside.
 
 | bits | command | additional data | cycles a bit | delay, one way | undriven DATA | phase from | first, other frames, cycles | bits at rest with a level, free | phases | time | |
 |---|---|---|---|---|---|---|---|---|---|---|---|
