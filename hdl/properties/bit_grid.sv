@@ -1,4 +1,4 @@
-// cells_timed: Samples, and edges of what is sent, are a bit apart, to the cycle; the first one is half a bit after the edge that timed them.
+// cells_timed: Samples, and edges of what is sent, are exactly a bit apart; the first sample is half a bit after the edge that timed it.
 reg [6:0] f_since; initial f_since = 7'd0;
 reg [6:0] f_bit; initial f_bit = 7'd0;
 reg f_timed; initial f_timed = 1'b0;

@@ -1,6 +1,6 @@
 // no_short_low: CLOCK is LOW for at least half a period, and for half a period after a hold of it ends, by the shortest period that was set meanwhile.
 // no_short_high: CLOCK is HIGH for at least half a period before it falls by itself.
-// starts_at_once: A start makes CLOCK LOW in the next cycle, whatever it was.
+// starts_at_once: A start makes CLOCK LOW in the next cycle, whatever its level was.
 reg [10:0] f_age_cycles; initial f_age_cycles = 11'd2046;
 reg [9:0] f_shortest; initial f_shortest = 10'd0;
 wire [9:0] f_half = period_cycles[10:1];

@@ -1,5 +1,5 @@
 // driver_only: The driver is on only while a request is being sent.
-// refused_unless_quiet: A request begins only for a trigger, if it is known, and the line is HIGH and has been quiet since a reply that did not come whole.
+// refused_unless_quiet: A request begins only for a trigger with a known ID, when the line is HIGH and has been quiet since an incomplete reply.
 // quiet_after_reset: After a reset no request begins for 63 us, the longest pause before a reply, and then only when the line is at rest.
 // one_verdict: A trigger outside an exchange has exactly one verdict, and no verdict comes without a trigger.
 // request_as_asked: A request is a LOW start bit, sync code, ID and parity, and a HIGH delimiter; after the request the line is HIGH.

@@ -1,7 +1,7 @@
 // rests_high: The clock is HIGH whenever no frame is under way, after its last rising edge and within the recovery time.
 // one_result: A trigger outside a frame has exactly one result, and no result comes without a trigger.
 // only_on_high: The clock falls for the first time only for a trigger, with DATA HIGH and a kind of frame that is allowed.
-// waits_after_reset: After a reset, and after a frame at whose end DATA was HIGH, no frame begins before the longest recovery time is over, whatever DATA is.
+// waits_after_reset: After a reset, and after a frame with DATA HIGH at its end, no frame begins before the longest recovery time has passed, whatever DATA is.
 // good_is_whole: A position is taken only if DATA was HIGH before the frame and LOW after it, all bits have come, its parity bit fits, and both copies are the same.
 // withdrawn: If DATA is still LOW when the longest recovery time is over, no position is valid, and there is a cause. A frame that brought none withdraws none.
 reg f_owed; initial f_owed = 1'b0;

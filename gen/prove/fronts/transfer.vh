@@ -1,5 +1,5 @@
 // does_what_was_asked: The bank gets address and direction of the current transfer.
-// writes_the_word: A written word is the one of the transfer.
+// writes_the_word: A written word is that of the transfer.
 // bytes_in_order: The bytes of a word are read in their order, each once.
 // answer_has_been_done: A transfer ends without an error only if it is allowed and the bank has done it.
 // read_is_what_the_bank_gave: A read returns the four bytes of the bank.
