@@ -420,9 +420,9 @@ module s6_two_channel_channel (
     wire [0:0] transaction_probe = 1'd0;
     wire [0:0] frame_own = 1'd0;
     // safe_after_reset: In the cycle after a reset CLOCK is HIGH and DATA is not driven.
-    // driver_as_sent: DATA is driven only as the command sender, or the line probe, said in the cycle before.
-    // frame_is_driven: A frame is on the wire only while the channel is busy, and its settings stay.
-    // positions_only: A frame that a trigger begins has a command whose answer is a position, with a request or without.
+    // driver_as_sent: DATA is driven only if the command sender or the line probe asked for it in the cycle before.
+    // frame_is_driven: A frame is on the wire only while the channel is busy, and its settings do not change.
+    // positions_only: A frame of a trigger has a command whose answer is a position, with a request or without.
     wire f_rides = command_now[5:3] == command_now[2:0] & command_now != 6'b000000 & command_now != 6'b010010 & command_now != 6'b111111;
     wire f_bare = command_now == 6'b000111 | command_now == 6'b111000;
     reg f_past_valid; initial f_past_valid = 1'b0;

@@ -455,11 +455,11 @@ module s6_two_channel_channel_registers (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // held_together: All words of a result that are held change in one cycle, when they are loaded, and in no other one.
-    // age_while_shown: Age and `stale` of what is held go on only while nothing is read.
-    // age_saturates: The age of what is held counts microseconds up to 65535, and stays there.
+    // held_together: All held words of a result change in the cycle in which they are loaded, and in no other one.
+    // age_while_shown: Age and `stale` of the held result advance only while nothing is read.
+    // age_saturates: The age of the held result counts microseconds up to 65535, and stays there.
     // settings_stay: Settings change only while the channel is not busy, and not in the cycle of a trigger.
-    // owed_once: A channel owes one result for a trigger that it takes, until that comes.
+    // owed_once: A channel owes one result for a trigger that it accepts, until that result comes.
     reg f_past_valid; initial f_past_valid = 1'b0;
     always @(posedge clock) begin
         f_past_valid <= 1'b1;

@@ -100,10 +100,10 @@ module s6_two_channel_clock_gen (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // no_short_low: CLOCK is LOW for half a period at least, and for half a period behind what holds it LOW, by the shortest period
+    // no_short_low: CLOCK is LOW for at least half a period, and for half a period after a hold of it ends, by the shortest period
     // that was set meanwhile.
-    // no_short_high: CLOCK is HIGH for half a period at least before it falls by itself.
-    // starts_at_once: A start makes CLOCK LOW in the next cycle, whatever it was.
+    // no_short_high: CLOCK is HIGH for at least half a period before it falls by itself.
+    // starts_at_once: A start makes CLOCK LOW in the next cycle, whatever its level was.
     reg [10:0] f_age_cycles; initial f_age_cycles = 11'd2046;
     reg [9:0] f_shortest; initial f_shortest = 10'd0;
     wire [9:0] f_half = period_cycles[10:1];

@@ -262,11 +262,11 @@ module s6_two_channel_frame_buffer (
 `endif
 `ifndef FORMAL_ANY_STATE
     localparam         HAS_OTHER_FRAMES = 1'b0;
-    // crc16_as_sent: The two bytes following a set are its CRC-16, equal to one that is computed apart from it over the bytes as
-    // they were written.
-    // whole_frames_only: What may be read ends with a frame: its end moves only when the last byte of a frame has been written.
-    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame goes in only where there is room for all of it
-    // in addition to the bytes that wait.
+    // crc16_as_sent: The two bytes following a set are the CRC-16 of its bytes as written, computed separately.
+    // whole_frames_only: The readable part of the buffer ends with a frame: its end moves only when the last byte of a frame has
+    // been written.
+    // never_overwritten unless HAS_OTHER_FRAMES (frames of other lengths): A frame is written only if the buffer has room for all
+    // of it.
     reg [15:0] f_crc; initial f_crc = 16'hffff;
     reg [7:0] f_byte; reg [3:0] f_cycle; initial f_cycle = 4'd0;
     wire [3:0] f_bits = in_tail ? 4'd0 : cycle_at[3] ? {1'b0, cycle_at[2:0]} : 4'd0;

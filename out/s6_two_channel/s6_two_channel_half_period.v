@@ -89,7 +89,7 @@ module s6_two_channel_half_period (
 `ifndef FORMAL_ANY_STATE
     wire [0:0] shorten = 1'd0;
     wire [0:0] lengthen = 1'd0;
-    // half_counted: Half a period is counted in full: the strobe comes as many cycles after the one before, or after a restart.
+    // half_counted: The strobe comes exactly half a period after the one before, or after a restart.
     reg [10:0] f_since; initial f_since = 11'd2046;
     reg [9:0] f_least; initial f_least = 10'd0;
     wire [9:0] f_half = period_cycles[10:1];

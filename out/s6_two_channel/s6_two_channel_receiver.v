@@ -544,10 +544,10 @@ module s6_two_channel_receiver (
     wire [0:0] low_separator = 1'd0;
     wire [0:0] separator_then = 1'd0;
     wire [0:0] new_block = 1'd0;
-    // crc_as_received: The CRC of a frame that is all position is found right exactly if it is what a serial register makes of the
-    // bits as sampled, at every width and command.
+    // crc_as_received: The CRC of a frame that is all position is reported right exactly if a serial register gets the same result
+    // from the sampled bits, at every width and command.
     // error_bits_as_received: F1, and F2 of EnDat 2.2, are the first samples after the start bit of a frame that is all position.
-    // bits_counted: A frame that is all position is whole after F1, F2, as many position bits as were set and five CRC bits: no
+    // bits_counted: A frame that is all position ends after F1, F2, the configured number of position bits and five CRC bits: no
     // sample more or less.
     reg f_same; initial f_same = 1'b0;
     reg f_open; initial f_open = 1'b0;
@@ -655,7 +655,7 @@ module s6_two_channel_receiver (
             if (field == FIELD_SKIP) `FORMAL_LABEL(bits_counted_lemma_skip) assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shifting & !align & !take_crc & !last_payload);
         end
     end
-    // word_kept: The position that the receiver is given behind a frame stays in it until the next frame.
+    // word_kept: The position that the receiver gets after a frame stays in it until the next frame.
     reg [52:0] f_given;
     reg f_keeps; initial f_keeps = 1'b0;
     always @(posedge clock) begin

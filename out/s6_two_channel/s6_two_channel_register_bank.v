@@ -504,9 +504,9 @@ module s6_two_channel_register_bank (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // read_is_one_snapshot: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
-    // moves_on: When two results of a channel have come since the held words followed, they follow as the next read begins,
-    // whatever other channels owe.
+    // read_is_one_snapshot: From the second cycle of a read on, no held word changes until the read has ended.
+    // moves_on: If two results of a channel have come since the held words were loaded, the next read loads them, whatever other
+    // channels owe.
     reg [1:0] f_came; initial f_came = 2'd0;
     always @(posedge clock) begin
         if (taken & (load | (f_came != 2'd2))) f_came <= load ? 2'd1 : f_came + 2'd1;

@@ -239,11 +239,12 @@ module s6_two_channel_snapshot (
 `ifndef FORMAL_ANY_STATE
     wire [0:0] latched = 1'd0;
     wire [0:0] upset_now = 1'd0;
-    // one_set: Position, its width, CRC, F2 and time change together, and only with a good result, or back when that was withdrawn.
+    // one_set: Position, width, CRC, F2 and time change together, and only with a good result, or when the previous position
+    // replaces a withdrawn one.
     // one_number_each: Each result has the next number, and nothing else changes it.
-    // bad_is_not_fresh: A result without good position leaves the position, and says that it is an earlier one.
-    // faults_with_results: Cause and flags change only with a result, a fault after it, or when the stored position was found
-    // changed.
+    // bad_is_not_fresh: A result without a good position leaves the position unchanged and clears `fresh`.
+    // faults_with_results: Cause and flags change only with a result, with a fault after it, or when a check finds the stored
+    // position changed.
     // restored unless NEVER_WITHDRAWS (positions that are never withdrawn): A position that is withdrawn before the next frame
     // gives way to the last good one, with its time, or to none if there was none; where that is not kept, no position is valid.
     reg f_past_valid; initial f_past_valid = 1'b0;

@@ -351,7 +351,8 @@ module s6_two_channel_stream (
 `ifndef FORMAL_ANY_STATE
     // one_set_per_trigger: A trigger while sets are collected has exactly one set, or is counted as lost; nothing else makes a set.
     // set_head_constant: Number, time and count of lost ones in the head of a set do not change while its frame is being written.
-    // lost_counted: Each set that is lost is counted, up to 65535, until the host clears the count; those before a set up to 255.
+    // lost_counted: Each lost set is counted, up to 65535, until the host clears the count; the sets lost before a set are counted
+    // up to 255.
     reg f_owed; initial f_owed = 1'b0;
     reg f_same; initial f_same = 1'b0;
     reg f_past_valid; initial f_past_valid = 1'b0;

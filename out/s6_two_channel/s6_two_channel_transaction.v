@@ -701,9 +701,9 @@ module s6_two_channel_transaction (
     wire [0:0] leaving = 1'd0;
     // starts_at_rest: A frame starts only when the line was ready: idle, and DATA LOW.
     // low_for_tr: The line is ready only after DATA was LOW for tR.
-    // abort_pause: After an aborted frame CLOCK stays quiet for 30 ms, less three microseconds, before DATA is looked at again.
-    // one_result_per_trigger unless HAS_ALL (requests), HAS_CONTINUOUS (a clock that goes on): Every trigger has exactly one
-    // result, or is told as lost; nothing else has a result.
+    // abort_pause: After an aborted frame CLOCK does not change for 30 ms, less three microseconds, before DATA is checked again.
+    // one_result_per_trigger unless HAS_ALL (requests), HAS_CONTINUOUS (continuous clock): Every trigger has exactly one result, or
+    // is reported as lost; nothing else has a result.
     reg f_past_valid; initial f_past_valid = 1'b0;
     reg [15:0] f_low_cycles; initial f_low_cycles = 16'd0;
     reg [15:0] f_quiet_us; initial f_quiet_us = 16'd0;
@@ -762,12 +762,12 @@ module s6_two_channel_transaction (
     end
 `endif
 `ifdef FORMAL_ANY_STATE
-    // forward_only unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A frame goes on
-    // from phase to phase and never back, whatever the registers held, but to its abort.
-    // phases_are_timed unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): Each phase has
-    // a timer that runs to the limit of this phase.
-    // phases_end unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (a clock that goes on): A phase whose timer
-    // has run out ends.
+    // forward_only unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (continuous clock): Without a new trigger
+    // the phase of a frame only advances, or goes to the abort, from any register contents.
+    // phases_are_timed unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (continuous clock): Every phase has a
+    // timer that counts to the limit of this phase.
+    // phases_end unless HAS_ALL (requests), HAS_DIAGNOSIS (diagnosis), HAS_CONTINUOUS (continuous clock): A phase ends when its
+    // timer reaches the limit.
     function [2:0] f_rank (input [2:0] of);
         case (of)
             PHASE_FIRST_LOW: f_rank = 3'd5;

@@ -461,11 +461,11 @@ module s6_two_channel_uart_bridge (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // write_is_whole: A word is written only when a whole command for it has come: code, length, four bytes of address, four of
-    // data, without framing error or time-out between them.
-    // first_word_as_sent: The first word that a command writes is the one that was sent, and goes to the address that was sent; an
-    // address beyond the map goes nowhere.
-    // read_is_whole: A byte is read only while a read command that has come whole is being answered.
+    // write_is_whole: A word is written only after a whole command: code, length, four bytes of address, four of data, without
+    // framing error or time-out between them.
+    // first_word_as_sent: The first word of a write command is written as sent, to the address that was sent; an address beyond the
+    // map is not written.
+    // read_is_whole: A byte is read only for a read command that was received whole.
     reg [3:0] f_bytes; initial f_bytes = 4'd0;
     reg f_is_write; initial f_is_write = 1'b0;
     reg f_whole; initial f_whole = 1'b0;

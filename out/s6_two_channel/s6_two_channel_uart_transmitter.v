@@ -73,9 +73,9 @@ module s6_two_channel_uart_transmitter (
 `define FORMAL_LABEL(name) name:
 `endif
 `ifndef FORMAL_ANY_STATE
-    // byte_on_the_line: TX has a start bit, the eight bits of the byte as it was taken, lowest first, and a stop bit; otherwise it
-    // is HIGH.
-    // tx_bit_timed: TX changes at the end of a bit only, and from one end to the next it is a bit, to the cycle.
+    // byte_on_the_line: TX has a start bit, the eight bits of the accepted byte, lowest first, and a stop bit; otherwise it is
+    // HIGH.
+    // tx_bit_timed: TX changes only at the end of a bit, and a bit has its exact length.
     reg [3:0] f_bit; initial f_bit = 4'd10;
     reg [7:0] f_byte;
     reg [14:0] f_since; initial f_since = 15'd0;

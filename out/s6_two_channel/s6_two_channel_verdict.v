@@ -253,9 +253,9 @@ module s6_two_channel_verdict (
 `ifndef FORMAL_ANY_STATE
     wire [0:0] settings_upset = 1'd0;
     wire [0:0] announced = 1'd0;
-    // good_means: A position is good only if the CRC, F1 and F2 said so, its settings were whole, and an answer was taken.
-    // one_result_each: An answer gives one result at most: none without a frame that was answered, refused, late or given up.
-    // lost_is_told: A trigger that was lost is kept until a result tells it.
+    // good_means: A position is good only if the CRC, F1 and F2 are right, its settings were whole, and an answer was accepted.
+    // one_result_each: An answer gives one result at most, and only a frame that was answered, refused, late or given up gives one.
+    // lost_is_told: A lost trigger is kept until a result reports it.
     reg f_past_valid; initial f_past_valid = 1'b0;
     always @(posedge clock) begin
         f_past_valid <= 1'b1;
