@@ -74,6 +74,11 @@ pub trait Controller: Sync {
         }
     }
 
+    /// Status and position of channel 0 from registers that follow its results; none where a host reads the words of the map.
+    fn newest(&self, _: &mut Pins) -> Option<Vec<u32>> {
+        None
+    }
+
     /// Words of results that are read one by one are of one moment only while they are held.
     fn must_hold(&self) -> bool {
         false

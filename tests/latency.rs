@@ -59,7 +59,9 @@ fn measured_latencies_of_every_preset_are_the_constants() {
 fn hosts_at_every_link_read_the_position_in_the_time_of_the_page() {
     let report = report();
     let page = page();
-    let names = ["uart", "apb", "wishbone", "axi_lite", "ahb_lite", "spi"];
+    let names = [
+        "uart", "parallel", "apb", "wishbone", "axi_lite", "ahb_lite", "spi",
+    ];
     assert_eq!(rows(report, "links").len(), names.len());
     for name in names {
         let row = row(report, "links", "bus", name);

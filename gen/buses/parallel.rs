@@ -8,6 +8,8 @@ struct Parallel;
 
 /// From an address to its data, in system clock cycles; a strobe takes as long.
 const STROBE_CYCLES: u64 = 4;
+/// Registers that follow the results: position from bit 0 on, then both halves of the status, high half first.
+const DIRECT: [u32; 5] = [0, 1, 2, 3, 4];
 /// Registers: the window's address, and both halves of its word.
 const WINDOW: u32 = 5;
 const WINDOW_LOW: u32 = 6;
@@ -61,6 +63,12 @@ impl Controller for Parallel {
         put(card, WINDOW_LOW, word & 0xFFFF);
         put(card, WINDOW_HIGH, word >> 16);
         wait_for_window(card);
+    }
+
+    fn newest(&self, card: &mut Pins) -> Option<Vec<u32>> {
+        // The read of register 0 latches the others.
+        let [p0, p1, p2, high, low] = DIRECT.map(|register| get(card, register));
+        Some(vec![low | high << 16, p0 | p1 << 16, p2])
     }
 
     fn must_hold(&self) -> bool {
