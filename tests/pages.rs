@@ -177,6 +177,24 @@ fn every_key_of_the_preset_is_on_the_page() {
     }
 }
 
+/// The line above the generated table of causes.
+const CAUSES_MARK: &str =
+    "<!-- From the table of causes: UPDATE_EXPECT=1 cargo test --test delivery causes writes it. -->\n";
+
+#[test]
+fn the_causes_in_the_programming_guide_are_those_of_the_table() {
+    let mut page = Figures::of("docs/programming.md");
+    let mut table = "| cause | name | meaning | remedy |\n|---|---|---|---|\n".to_owned();
+    for row in cause::ALL {
+        let [means, helps] = row.advice.expect("advice");
+        table += &format!("| {} | `{}` | {means} | {helps} |\n", row.code, row.name);
+    }
+    let (before, rest) = page.text.split_once(CAUSES_MARK).expect("the mark");
+    let end = rest.find("\n\n").expect("the end of the table") + 1;
+    page.text = format!("{before}{CAUSES_MARK}{table}{}", &rest[end..]);
+    page.check();
+}
+
 /// Drawings of the programming guide, each with the scenario that it shows.
 const DRAWINGS: [(&str, &[&str]); 3] = [
     ("frame.svg", &["paper"]),
