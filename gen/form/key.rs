@@ -395,7 +395,11 @@ impl Key {
         }
         if self.first_leads {
             let first = choices.first().map(|choice| quoted(&choice.word));
-            let _ = write!(text, " (every other part also needs {})", first.unwrap_or_default());
+            let _ = write!(
+                text,
+                " (every other part also needs {})",
+                first.unwrap_or_default()
+            );
         }
         if !self.takes.is_empty() {
             let table = self.tables.first().unwrap_or(&"");
