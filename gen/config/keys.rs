@@ -108,7 +108,7 @@ keys! {
         .note("instead of `single_turn_bits`").of(CARD_FORM).usual(Usual::Boolean(false));
     COMMAND = Key::text(CHANNEL, "command", "mode command that a trigger sends").one_of(commands).of(ENDAT_FORM).required("\"111000\"");
     ENABLED = Key::boolean(CHANNEL, "enabled", "whether the channel takes triggers")
-        .note("if any `[[channel]]` has this key or one of the next two, every channel of the card gets its own trigger settings, which the host can change \
+        .note("if any `[[channel]]` has `enabled`, `divider` or `sources`, every channel of the card gets its own trigger settings, which the host can change \
                ([host-link.md](host-link.md#triggers-of-each-channel)); without these keys the card has no logic for them")
         .of(CARD_FORM).usual(Usual::Boolean(true));
     DIVIDER = Key::number(CHANNEL, "divider", "the channel takes one of so many triggers").of(CARD_FORM).usual(Usual::Number(1));
@@ -141,7 +141,7 @@ keys! {
     LINE_PARTS = Key::texts(&["line"], "parts", "options for the line delay, which every channel tracks anyway ([margin.md](margin.md))")
         .one_of(|| parts(&LINE)).first_leads().of(CARD_FORM);
     PHASE = Key::text(&["line"], "phase", "where the phase comes from after reset")
-        .note("the host can change it, and the next three").one_of(phases).takes("alignment").of(CARD_FORM).usual(Usual::Word("tracked"));
+        .note("the host can change it, and also `fixed_delay_ns`, `drift_limit_ns` and `samples`").one_of(phases).takes("alignment").of(CARD_FORM).usual(Usual::Word("tracked"));
     FIXED_DELAY_NS = Key::number(&["line"], "fixed_delay_ns", "delay with `\"fixed\"`, synchroniser and filter included")
         .note("kept to a sixteenth of a cycle; up to 2047 cycles").takes("alignment").of(CARD_FORM).usual(Usual::Number(0));
     DRIFT_LIMIT_NS = Key::number(&["line"], "drift_limit_ns", "drift of the delay that gives alarm")
