@@ -38,7 +38,13 @@ pub const BLOCKS: &str = "blocks";
 pub const OUTLINE: [Part; 6] = [
     Part {
         title: "Begin",
-        pages: &["index", "tutorial", "glossary"],
+        pages: &[
+            "index",
+            "tutorial",
+            "first-bitstream",
+            "first-driver",
+            "glossary",
+        ],
     },
     Part {
         title: "How to",

@@ -348,33 +348,6 @@ fn follow(page: &str, of: Of, edit: impl Fn(&str) -> String) -> (Dir, String) {
     (folder, told)
 }
 
-fn readme(of: Of) {
-    if !tools::require("bash", "the card of the README") {
-        return;
-    }
-    let (folder, told) = follow("README.md", of, |text| {
-        let journey = text.split("I want to try it without hardware").nth(1);
-        of.samples(journey.unwrap(), "--samples 10000")
-    });
-    assert!(
-        told.contains(&format!("{} sample sets", of.count())),
-        "{told}"
-    );
-    assert!(folder.0.join("angles.svg").exists(), "{told}");
-}
-
-/// Catches a journey of the README that ends in an error.
-#[test]
-fn readme_journey_works_with_a_quick_card() {
-    readme(Of::Quick);
-}
-
-#[test]
-#[ignore = "slow: the README's card at its own clock"]
-fn readme_journey_works_as_printed() {
-    readme(Of::Page);
-}
-
 fn recordings(of: Of) {
     if !tools::require("bash", "recordings of the page") {
         return;
@@ -404,8 +377,11 @@ fn host_page(of: Of) {
     let (folder, told) = follow("docs/host.md", of, |text| {
         of.samples(text, "--samples 10000")
     });
+    let count = format!("{} sample sets", of.count());
+    assert!(told.contains(&count), "{told}");
     let rows = fs::read_to_string(folder.0.join("angles.csv")).unwrap();
     assert!(rows.lines().count() > of.count(), "{told}");
+    assert!(folder.0.join("angles.svg").exists(), "{told}");
 }
 
 /// Catches a page of the host whose first look gives nothing.

@@ -1,7 +1,7 @@
 //! Pages: figures in the documentation are those of the program.
 
 use crate::tools;
-use endat_gen::area::{ICE40, XC6S};
+use endat_gen::area::XC6S;
 use endat_hdl::config::{needed_baud, read_bytes, CHANNELS};
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand;
@@ -38,13 +38,6 @@ impl Figures {
             found[at + 2] = format!(" {cell} ");
         }
         self.text = self.text.replacen(&old, &found.join("|"), 1);
-    }
-
-    /// The words between two others.
-    fn words(&mut self, before: &str, words: &str, behind: &str) {
-        let (head, tail) = self.text.split_once(before).unwrap();
-        let (_, tail) = tail.split_once(behind).unwrap();
-        self.text = format!("{head}{before}{words}{behind}{tail}");
     }
 
     fn check(self) {
@@ -122,46 +115,20 @@ fn the_sizes_are_those_of_the_area_table() {
     page.check();
 
     let mut page = Figures::of("README.md");
-    // The receiver of T-format has a sentence.
-    let [lut, ff] = area("t_format", ICE40.name);
-    page.words(
-        "short pulses, it takes ",
-        &lut.to_string(),
-        " LUTs of four inputs and",
-    );
-    page.words(" LUTs of four inputs and ", &ff.to_string(), " flip-flops");
     for (head, subject, third) in [
         (
             "| one port",
             "channel",
             &of_peer as &dyn Fn([i64; 2]) -> String,
         ),
-        (
-            "| guards against upsets",
-            "channel_guards",
-            &|area: [i64; 2]| {
-                let without = crate::pages::area("channel_restore", XC6S.name);
-                let [lut, ff] = [0, 1].map(|kind| area[kind] - without[kind]);
-                format!("{lut} LUT and {ff} FF more than without them")
-            },
-        ),
         ("| two-channel card", "card_stream", &|area| {
             of_device(area) + " of the LX9"
         }),
-        ("| card with everything", "card_service", &of_device),
     ] {
         let [lut, ff] = area(subject, XC6S.name);
         page.cells(head, &[lut.to_string(), ff.to_string(), third([lut, ff])]);
     }
-    let monitors = [
-        "recovery_counter",
-        "second_receiver",
-        "second_interface",
-        "second_record",
-    ];
-    let monitors = monitors.map(|subject| area(subject, XC6S.name));
-    let all = |kind: usize| monitors.map(|m| m[kind].to_string()).join("; ");
-    page.cells("| for a safe control", &[all(0), all(1)]);
+    page.cells("| public position-only", &peer.map(|n| n.to_string()));
     page.check();
 }
 
@@ -195,7 +162,7 @@ fn every_command_is_on_the_page() {
         let command = line.split_whitespace().next().unwrap();
         count += 1;
         assert!(
-            command == "help" || page.contains(&format!("| `{command} ")),
+            command == "help" || page.contains(&format!("| `{command}` ")),
             "{command}"
         );
     }
@@ -208,6 +175,24 @@ fn every_key_of_the_preset_is_on_the_page() {
     for words in ["1 to 8 of them", "`[]`", "6 at 100 MHz", "--name my_card"] {
         assert!(page.contains(words), "{words}");
     }
+}
+
+/// The line above the generated table of causes.
+const CAUSES_MARK: &str =
+    "<!-- From the table of causes: UPDATE_EXPECT=1 cargo test --test delivery causes writes it. -->\n";
+
+#[test]
+fn the_causes_in_the_programming_guide_are_those_of_the_table() {
+    let mut page = Figures::of("docs/programming.md");
+    let mut table = "| cause | name | meaning | remedy |\n|---|---|---|---|\n".to_owned();
+    for row in cause::ALL {
+        let [means, helps] = row.advice.expect("advice");
+        table += &format!("| {} | `{}` | {means} | {helps} |\n", row.code, row.name);
+    }
+    let (before, rest) = page.text.split_once(CAUSES_MARK).expect("the mark");
+    let end = rest.find("\n\n").expect("the end of the table") + 1;
+    page.text = format!("{before}{CAUSES_MARK}{table}{}", &rest[end..]);
+    page.check();
 }
 
 /// Drawings of the programming guide, each with the scenario that it shows.

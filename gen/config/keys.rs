@@ -67,8 +67,8 @@ keys! {
                may be left out in `[endat]` if each channel has its own")
         .of(CLOCKED).required("3_125_000");
     CALIBRATION_HZ = Key::number(EITHER, "calibration_hz", "EnDat clock of the frames that measure the line delay")
-        .note("up to `clock_hz`, as slow as 2047 system cycles to the period are; four fifths of its period must hold the delay of cable and \
-               filter (655 kHz with 100 m and 20 ns)")
+        .note("at most `clock_hz`; the period is at most 2047 system cycles; the delay of cable and filter must be less than four fifths of the period \
+               (at most 655 kHz with 100 m and 20 ns)")
         .of(ENDAT_FORM).usual(Usual::Follows("200 kHz; 100 kHz with more than 380 m"));
     TST_NS = Key::number(EITHER, "tst_ns", "shortest first low phase tST")
         .note("0 = none").of(CLOCKED).usual(Usual::Follows("2000 from 1 MHz up, else 0; with SSI 0"));
@@ -80,8 +80,8 @@ keys! {
         .note("1 cycle to half a period, at most 63 cycles")
         .of(ENDAT_FORM).usual(Usual::Follows("a quarter of a period; half of one with alignment"));
     TCAL_MAX = Key::number(EITHER, "tcal_max_ns", "longest calculation time tcal of the encoder")
-        .note("less with cable: the wait for the start bit is at most 4095 us. It counts at the calibration clock, too: an encoder that answers \
-               at a clock pulse instead of a time needs more (at clock 15 and 200 kHz 28000)")
+        .note("less with a long cable: the core waits at most 4095 us for the start bit. The limit also holds in the slow frame that measures the \
+               delay. Some encoders answer at a fixed clock pulse, so they answer later in that frame: an answer at clock 15 needs 28000 if `calibration_hz` is 200 kHz")
         .of(ENDAT_FORM).usual(Usual::Number(TCAL_MAX_NS));
     RECOVERY_MIN = Key::number(EITHER, "recovery_min_ns", "shortest recovery time tm of the encoder")
         .note("from 10000; from 1250 with 111000 above 1 MHz; with SSI at least one and a half clock periods")
@@ -108,15 +108,15 @@ keys! {
         .note("instead of `single_turn_bits`").of(CARD_FORM).usual(Usual::Boolean(false));
     COMMAND = Key::text(CHANNEL, "command", "mode command that a trigger sends").one_of(commands).of(ENDAT_FORM).required("\"111000\"");
     ENABLED = Key::boolean(CHANNEL, "enabled", "whether the channel takes triggers")
-        .note("this key or one of the next two in any `[[channel]]` gives all channels of the card their own trigger, which the host can change \
-               ([host-link.md](host-link.md#triggers-of-each-channel)); without them there is no logic for it")
+        .note("if any `[[channel]]` has `enabled`, `divider` or `sources`, every channel of the card gets its own trigger settings, which the host can change \
+               ([host-link.md](host-link.md#triggers-of-each-channel)); without these keys the card has no logic for them")
         .of(CARD_FORM).usual(Usual::Boolean(true));
     DIVIDER = Key::number(CHANNEL, "divider", "the channel takes one of so many triggers").of(CARD_FORM).usual(Usual::Number(1));
     OWN_SOURCES = Key::texts(CHANNEL, "sources", "which triggers are for this channel")
         .note("as far as `trigger.sources` or the host enables them").one_of(sources).of(CARD_FORM).usual(Usual::All);
 
     SAMPLE_HZ = Key::number(&["trigger"], "sample_hz", "rate of the timer trigger")
-        .note("from `system_hz` / 2^24 (6 at 100 MHz); with the timer up to what frame, cable and recovery time leave, `divider` times that")
+        .note("at least `system_hz` / 2^24 (6 at 100 MHz); if the timer is a source, frame, cable and recovery time limit it (`explain` prints the limit), and `divider` multiplies that limit")
         .of(CARD_FORM).required("10_000");
     TRIGGER_SOURCES = Key::texts(&["trigger"], "sources", "triggers that are enabled after reset")
         .note("with `[]` the host enables one later").one_of(sources).of(CARD_FORM).usual(Usual::All);
@@ -125,8 +125,8 @@ keys! {
     READ_HZ = Key::number(&["link"], "read_hz", "how often the host reads all channels, in one burst")
         .note("as often as the link can carry the results").of(CARD_FORM).usual(Usual::Follows("`sample_hz`"));
 
-    BUS = Key::text(&["host"], "bus", "what stands between the registers and the host ([bus.md](bus.md))").one_of(buses).usual(Usual::Word("uart"));
-    BASE_ADDRESS = Key::number(&["host"], "base_address", "where the system has the registers, in bytes, with a bus that has addresses of a system")
+    BUS = Key::text(&["host"], "bus", "bus between the registers and the host ([bus.md](bus.md))").one_of(buses).usual(Usual::Word("uart"));
+    BASE_ADDRESS = Key::number(&["host"], "base_address", "byte address of the registers in the system, for a bus with system addresses")
         .note("as `0x4000_0000`; it goes into the SVD, SystemRDL, C header and `_csr.csv`, not into the logic")
         .step(MAP_BYTES as u64).of(CARD_FORM).usual(Usual::Number(0));
     SCK_HZ = Key::number(&["host"], "sck_hz", "the host's clock, with `\"spi\"`")
@@ -138,10 +138,10 @@ keys! {
         .note("as `[0x4C, 0x59]`; the host can change them ([programming.md](programming.md))")
         .items(&INFOS_RANGES).at_most(LIST).takes("requests").of(CARD_FORM);
 
-    LINE_PARTS = Key::texts(&["line"], "parts", "what each channel does about its line delay besides following it ([margin.md](margin.md))")
+    LINE_PARTS = Key::texts(&["line"], "parts", "options for the line delay, which every channel tracks anyway ([margin.md](margin.md))")
         .one_of(|| parts(&LINE)).first_leads().of(CARD_FORM);
     PHASE = Key::text(&["line"], "phase", "where the phase comes from after reset")
-        .note("the host can change it, and the next three").one_of(phases).takes("alignment").of(CARD_FORM).usual(Usual::Word("tracked"));
+        .note("the host can change it, and also `fixed_delay_ns`, `drift_limit_ns` and `samples`").one_of(phases).takes("alignment").of(CARD_FORM).usual(Usual::Word("tracked"));
     FIXED_DELAY_NS = Key::number(&["line"], "fixed_delay_ns", "delay with `\"fixed\"`, synchroniser and filter included")
         .note("kept to a sixteenth of a cycle; up to 2047 cycles").takes("alignment").of(CARD_FORM).usual(Usual::Number(0));
     DRIFT_LIMIT_NS = Key::number(&["line"], "drift_limit_ns", "drift of the delay that gives alarm")
@@ -156,7 +156,7 @@ keys! {
             Choice::new("interrupt", "interrupt to a processor"),
         ]).of(CARD_FORM);
 
-    SAFETY_PARTS = Key::texts(&["safety"], "parts", "what watches each channel beside it ([safety.md](safety.md))")
+    SAFETY_PARTS = Key::texts(&["safety"], "parts", "monitors of each channel ([safety.md](safety.md))")
         .note("all but `\"second_receiver\"` with every bus but `\"none\"`; `\"second_interface\"` has the pins `second_sck_i`, `second_cs_n_i` and \
                `second_miso_o`, on Papilio Pro B8, B9 and B10; `\"second_receiver\"` not with `double_edge`; `\"error_test\"` takes `\"requests\"`")
         .one_of(|| parts(&SAFETY)).of(CARD_FORM);
@@ -165,8 +165,8 @@ keys! {
     UPSET_GUARDS = Key::boolean(&["safety"], "upset_guards", "whether stored bits are checked, so that an upset of a register shows ([safety.md](safety.md#guards-against-upsets))")
         .note("a port takes some 100 LUTs and 100 flip-flops more; without them a host's check of the CRC finds upsets of the EnDat position that is shown, and \
                4 per mille of all upsets show a wrong one as good (with guards 0.6)").usual(Usual::Boolean(false));
-    RESTORE = Key::boolean(&["safety"], "restore", "whether a port without bus shows the position before again when the encoder withdraws one")
-        .note("behind every bus but `\"none\"` it always does; otherwise no position is valid then").of(CARD_FORM).usual(Usual::Boolean(false));
+    RESTORE = Key::boolean(&["safety"], "restore", "whether a port without bus shows the previous position again when the encoder withdraws one")
+        .note("with any other bus than `\"none\"` it always does; with `false` no position is valid then").of(CARD_FORM).usual(Usual::Boolean(false));
 
     FIFO_BYTES = Key::number(&["stream"], "fifo_bytes", "buffer of the stream ([stream.md](stream.md))")
         .note("0 = no stream, no logic; `sample_hz` times the frame must fit the line")
@@ -231,11 +231,11 @@ pub const TABLES: &[(&str, &str)] = &[
     (CHANNELS, "an encoder port; one table in double brackets for each, 1 to 8 of them"),
     ("trigger", "when positions are taken"),
     ("link", "the UART, on cards that have one"),
-    ("host", "what stands between the registers and the host"),
+    ("host", "bus between the registers and the host"),
     ("service", "what each channel does besides triggered positions"),
     ("line", "what each channel does about its line delay"),
     ("outputs", "outputs to logic in the same device"),
-    ("safety", "what watches each channel beside it, and checks of stored bits"),
+    ("safety", "monitors of each channel, and checks of stored bits"),
     ("stream", "sets of all channels, one for each trigger, for a host that wants every position"),
     ("device", "what the device cannot do"),
     ("board", "the board: pins and clock manager"),

@@ -394,7 +394,12 @@ impl Key {
             let _ = write!(text, ", up to {} {what}", self.most);
         }
         if self.first_leads {
-            text += " (the others take the first)";
+            let first = choices.first().map(|choice| quoted(&choice.word));
+            let _ = write!(
+                text,
+                " (every other part also needs {})",
+                first.unwrap_or_default()
+            );
         }
         if !self.takes.is_empty() {
             let table = self.tables.first().unwrap_or(&"");
@@ -452,7 +457,7 @@ pub fn head(table: &str) -> String {
 
 /// Keys as a table of Markdown.
 pub fn page<'k>(keys: impl IntoIterator<Item = &'k Key>) -> String {
-    let head = "| key | what it is | what may stand there | default |\n|---|---|---|---|\n";
+    let head = "| key | meaning | allowed values | default |\n|---|---|---|---|\n";
     let rows: String = keys.into_iter().map(Key::row).collect();
     format!("{head}{rows}")
 }

@@ -141,7 +141,7 @@ fn compiled() -> Option<&'static Path> {
 
 /// A block of the page.
 fn block(fence: &str, number: usize) -> &'static str {
-    let page = include_str!("../../docs/driver.md");
+    let page = include_str!("../../docs/first-driver.md");
     let blocks = page.split(fence).skip(1);
     let text = |rest: &'static str| rest.split("```").next().unwrap().trim_start();
     blocks.map(text).nth(number).unwrap()
