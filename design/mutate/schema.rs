@@ -47,10 +47,13 @@ pub fn schema(design: &Design, mutations: &[Mutation]) -> (Design, String) {
     (design, name)
 }
 
+/// What is at each place instead, with the number that chooses it.
+type Places<'a, Place, With> = BTreeMap<Place, Vec<(u128, &'a With)>>;
+
 /// Puts the mutations of one module into it.
 fn change(module: &mut Module, choice: NetId, mutations: Vec<(&Mutation, u128)>) {
-    let mut statements: BTreeMap<(usize, &Path), Vec<(u128, &Vec<Statement>)>> = BTreeMap::new();
-    let mut connections: BTreeMap<(usize, usize), Vec<(u128, &Expr)>> = BTreeMap::new();
+    let mut statements: Places<(usize, &Path), Vec<Statement>> = BTreeMap::new();
+    let mut connections: Places<(usize, usize), Expr> = BTreeMap::new();
     let mut resets = BTreeMap::new();
     let mut stages = BTreeMap::new();
     for (mutation, number) in mutations {
