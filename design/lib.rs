@@ -6,6 +6,7 @@
 pub mod elaborate;
 pub mod engine;
 pub mod memory;
+pub mod mutate;
 mod printing;
 pub mod reg;
 pub mod verilog;

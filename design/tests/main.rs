@@ -12,6 +12,7 @@ mod header;
 mod lint;
 mod memories;
 mod mismatch;
+mod mutants;
 mod program;
 mod random;
 mod rng;

@@ -110,7 +110,8 @@ impl Subject {
         self.parts.retain(|part| holds(*part));
     }
 
-    fn of(name: &str, design: Design, mut files: Vec<Artifact>) -> Self {
+    /// A design under the name of a card, with its Verilog and perhaps other files.
+    pub(crate) fn of(name: &str, design: Design, mut files: Vec<Artifact>) -> Self {
         files.retain(is_core);
         let design = as_printed(&design);
         let parts = parts(&design);
@@ -323,8 +324,8 @@ impl Proof<'_> {
     }
 }
 
-/// Whether a property that holds from the start values no longer does where one module is another one, which `first` has read from the file of
-/// the emitted one and changed. None where the module is in no part that is proved.
+/// Whether a property that holds from the start values no longer does in the parts that hold a module. None where the module is in no part that
+/// is proved. Unless `first` is empty, the module is the one that `first` has read from the file of the emitted one and changed.
 pub(crate) fn refutes(
     subject: &Subject,
     module: usize,
@@ -343,7 +344,7 @@ pub(crate) fn refutes(
         let mut files = subject.files.clone();
         files.push(harness.clone());
         crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
-        files.retain(|file| file.path != own);
+        files.retain(|file| first.is_empty() || file.path != own);
         if tree
             .iter()
             .any(|index| !design.modules[*index].properties.is_empty())

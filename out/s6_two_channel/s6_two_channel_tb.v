@@ -737,6 +737,7 @@ module s6_two_channel_tb;
     reg [48*CHANNELS-1:0] position;
     reg [CHANNELS-1:0] f1, f2, spoil_crc, no_start, stay_high, may_stop, goes_on;
     reg [4:0] wrong_bits = 5'd1; // of the CRC that spoil_crc spoils
+    integer crc_bit;
     reg [6*CHANNELS-1:0] width; // bits of a position
     reg [32*CHANNELS-1:0] start_ps; // the start bit comes so much later
     wire [5*CHANNELS-1:0] encoder_crc;
@@ -1511,7 +1512,9 @@ module s6_two_channel_tb;
 
         tell("wrong CRC");
         // A wrong CRC on the first channel only, each of its bits in turn: its last good position stays.
-        for (wrong_bits = 5'd16; wrong_bits != 5'd0; wrong_bits = wrong_bits >> 1) begin
+        for (crc_bit = 0; crc_bit < 5; crc_bit = crc_bit + 1) begin
+            // No loop variable: Verilator 5.006 would show the encoder its first value too late.
+            wrong_bits = 5'd16 >> crc_bit;
             new_positions;
             spoil_crc[FIRST] = 1'b1;
             expect_fault(FIRST, CRC);

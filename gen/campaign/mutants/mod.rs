@@ -11,6 +11,7 @@
 
 pub mod alone;
 mod bench;
+pub mod chosen;
 mod equal;
 mod known;
 mod list;

@@ -1,0 +1,172 @@
+//! Wrong designs of a card in one program: its bench, with the number of a mutant, says whether it sees it.
+//!
+//! The design is changed before it is printed, so whoever reads the text gets the same wrong core.
+
+use super::Emission;
+use crate::artifact::Artifact;
+use crate::error::{shorten, GenError};
+use crate::prove::{refutes, Subject};
+use crate::readers::{is_core, passes, Reader};
+use crate::{scratch, sources, tools};
+use endat_sim::rng::Rng;
+use rtl_design::elaborate::Design;
+use rtl_design::mutate::{mutated, mutations, schema, Kind, Mutation};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// A bench that has not ended by then has seen the mutant.
+const LONGEST: Duration = Duration::from_secs(300);
+
+/// Mutations of a design: its modules in turn, and in each module the kinds in turn, so that neither wide words nor large modules crowd out
+/// the others. Returns fewer than `count` if the design has no more.
+#[must_use]
+pub fn drawn(design: &Design, count: usize, seed: u64) -> Vec<Mutation> {
+    let mut rng = Rng::new(seed);
+    let mut pools: Vec<Vec<Vec<Mutation>>> = (0..design.modules.len())
+        .map(|id| {
+            let all = mutations(design, id);
+            let of = |kind| all.iter().filter(|m| m.kind == kind).cloned().collect();
+            Kind::ALL.into_iter().map(of).collect()
+        })
+        .collect();
+    let mut found = vec![];
+    while found.len() < count && !pools.is_empty() {
+        pools.retain_mut(|kinds| {
+            kinds.retain(|pool| !pool.is_empty());
+            if kinds.is_empty() || found.len() == count {
+                return !kinds.is_empty();
+            }
+            kinds.rotate_left(1);
+            let last = kinds.len() - 1;
+            let pool = &mut kinds[last];
+            let at = rng.in_range(0, pool.len() as u64 - 1) as usize;
+            found.push(pool.swap_remove(at));
+            true
+        });
+    }
+    found
+}
+
+/// Whether a property of a part that holds the wrong module does not hold any more, from the start values on.
+pub fn proof_sees(emission: &Emission, mutation: &Mutation) -> Result<bool, GenError> {
+    let right = &emission.subject;
+    let design = mutated(&right.design, mutation);
+    let files = sources::untitled(&design);
+    let subject = Subject::of(&right.name, design, files);
+    let name = &right.design.modules[mutation.module].name;
+    let module = subject.design.modules.iter().position(|m| m.name == *name);
+    // Without a use for the module the text does not have it: its properties are gone with it.
+    let Some(module) = module else {
+        return Ok(false);
+    };
+    Ok(refutes(&subject, module, "")?.unwrap_or(false))
+}
+
+/// A bench with one card, or with a card and its mutants.
+pub struct Chosen {
+    folder: TempDir,
+    reader: Reader,
+}
+
+impl Chosen {
+    /// All these mutants of a card. A card whose bench does not pass while none is chosen is refused.
+    pub fn new(
+        emission: &Emission,
+        mutations: &[Mutation],
+        reader: Reader,
+    ) -> Result<Self, GenError> {
+        let (design, choice) = schema(&emission.subject.design, mutations);
+        let name = emission.bench.path.trim_end_matches(".v");
+        let head = format!("module {name};");
+        let number = format!(
+            "{head}\n    integer {choice};\n    initial if (!$value$plusargs(\"mutant=%d\", {choice})) {choice} = 0;"
+        );
+        let text = once(&emission.bench.text, &head, &number)?;
+        let text = once(
+            &text,
+            " dut (",
+            &format!(" dut (.{choice}({choice}[15:0]), "),
+        )?;
+        let bench = Artifact::new(emission.bench.path.clone(), text);
+        let program = Self::built(&design, &bench, reader)?;
+        let text = program.play(0)?;
+        if passes(&text) {
+            return Ok(program);
+        }
+        Err(GenError::input(format!(
+            "campaign mutants: {}: the bench does not pass while no mutant is chosen: {}; mend that first",
+            emission.subject.name,
+            shorten(text.trim())
+        )))
+    }
+
+    /// One mutant of a card alone, printed like any other card: it is chosen by number 0.
+    pub fn plain(
+        emission: &Emission,
+        mutation: &Mutation,
+        reader: Reader,
+    ) -> Result<Self, GenError> {
+        let design = mutated(&emission.subject.design, mutation);
+        Self::built(&design, &emission.bench, reader)
+    }
+
+    /// Whether the bench sees a mutant: it does not end with PASS.
+    pub fn sees(&self, number: usize) -> Result<bool, GenError> {
+        Ok(!passes(&self.play(number)?))
+    }
+
+    fn built(design: &Design, bench: &Artifact, reader: Reader) -> Result<Self, GenError> {
+        let folder = scratch::folder()?;
+        let mut files = sources::untitled(design);
+        files.retain(is_core);
+        files.push(bench.clone());
+        crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
+        let top = bench.path.trim_end_matches(".v");
+        let (program, mut arguments) = match reader {
+            Reader::Icarus(language) => ("iverilog", vec![language, "-s", top, "-o", "sim.vvp"]),
+            Reader::Verilator => {
+                let quiet = ["-Wno-fatal", "-Wno-lint", "-Wno-style"];
+                // Optimised, tasks of a bench take minutes to compile, to save seconds of its run.
+                let fast = ["--binary", "--timing", "-MAKEFLAGS", "OPT_FAST=-O0"];
+                let names = ["--top-module", top, "-o", "sim"];
+                ("verilator", [&fast[..], &quiet, &names].concat())
+            }
+        };
+        arguments.extend(files.iter().map(|file| file.path.as_str()));
+        let ran = tools::run(program, folder.path(), &arguments)?;
+        if ran.is_good {
+            return Ok(Self { folder, reader });
+        }
+        Err(GenError::fault(
+            "campaign mutants",
+            &format!("{program}: {}", tools::line_with(&ran.text(), "rror")),
+        ))
+    }
+
+    fn play(&self, number: usize) -> Result<String, GenError> {
+        let chosen = format!("+mutant={number}");
+        let folder = self.folder.path();
+        let ran = match self.reader {
+            Reader::Icarus(_) => {
+                let arguments = ["-n", "sim.vvp", &chosen, "+first"];
+                tools::run_within("vvp", folder, &arguments, LONGEST)
+            }
+            Reader::Verilator => {
+                let program = folder.join("obj_dir/sim").display().to_string();
+                tools::run_within(&program, folder, &[&chosen, "+first"], LONGEST)
+            }
+        }?;
+        Ok(ran.map_or_else(String::new, |ran| ran.text()))
+    }
+}
+
+/// Replaces what a bench has exactly once.
+fn once(text: &str, from: &str, to: &str) -> Result<String, GenError> {
+    match text.matches(from).count() {
+        1 => Ok(text.replace(from, to)),
+        count => Err(GenError::fault(
+            "campaign mutants",
+            &format!("{from}: is in the bench {count} times"),
+        )),
+    }
+}
