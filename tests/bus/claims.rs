@@ -143,6 +143,24 @@ fn a_moment_ends_by_itself_and_with_a_lower_address() {
     assert!(both[0] > 10 && both[1] > 10, "{both:?}");
 }
 
+/// Each read of the same address begins a new snapshot, however fast the reads follow each other.
+#[test]
+fn a_master_that_polls_one_address_sees_the_next_result() {
+    for bus in WORD_BUSES {
+        let mut master = Master::new(bus, "");
+        for name in ["status", "timestamp"] {
+            master.bench.run_cycles(60_000); // the channel takes a trigger
+            let address = at(&RESULT, name, 0);
+            let before = master.read(address);
+            master.write(at(&CARD, "trigger_now", 0), 1);
+            let end = master.bench.cycle() + 60_000;
+            while master.read(address) == before {
+                assert!(master.bench.cycle() < end, "{bus:?}: {name} stays");
+            }
+        }
+    }
+}
+
 #[test]
 fn an_access_takes_the_cycles_that_the_page_says() {
     let status = at(&RESULT, "status", 0);

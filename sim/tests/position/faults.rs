@@ -297,6 +297,30 @@ fn a_withdrawn_position_gives_way_as_its_port_says() {
     }
 }
 
+/// A port that restores has nothing to bring back yet.
+#[test]
+fn withdrawal_of_the_first_position_leaves_no_valid_one() {
+    let with_copy = Features {
+        restore: true,
+        second_receiver: true,
+        ..Features::NONE
+    };
+    let restoring = Features {
+        restore: true,
+        ..Features::NONE
+    };
+    for features in [restoring, with_copy, Features::GUARDED] {
+        // Frame 0 measures the delay and brings no position.
+        let setup = Setup::card().defect(1, Defect::LateFall(MS)).with(features);
+        let mut rig = setup.fresh();
+        good_frame(&mut rig);
+        assert_eq!(rig.get("position_valid"), 1);
+        assert!(rig.run_until_done(MS, |b| b.get("cause") != 0));
+        let shown = ["position_valid", "fresh"].map(|name| rig.get(name));
+        assert_eq!(shown, [0, 0], "{features:?}");
+    }
+}
+
 #[test]
 fn the_longest_allowed_recovery_is_no_fault() {
     let mut setup = Setup::card();
