@@ -5,7 +5,6 @@ mod counted;
 mod mutants;
 mod results;
 mod schedulers;
-mod wrong_designs;
 
 use endat_gen::cli;
 use endat_sim::campaign;

@@ -12,6 +12,7 @@ mod purpose_bench;
 mod t_format_bench;
 mod t_format_mutations;
 pub mod testbench;
+mod wrong_designs;
 
 pub use crate::emitted::{file_of, has_block, name_of};
 use crate::tools;
