@@ -139,9 +139,13 @@ fn compiled() -> Option<&'static Path> {
     PROGRAM.get_or_init(compile).as_deref()
 }
 
-/// A block of the page.
+/// A block of the first page.
 fn block(fence: &str, number: usize) -> &'static str {
-    let page = include_str!("../../docs/first-driver.md");
+    block_of(include_str!("../../docs/first-driver.md"), fence, number)
+}
+
+/// A block of a page.
+fn block_of(page: &'static str, fence: &str, number: usize) -> &'static str {
     let blocks = page.split(fence).skip(1);
     let text = |rest: &'static str| rest.split("```").next().unwrap().trim_start();
     blocks.map(text).nth(number).unwrap()
@@ -201,7 +205,8 @@ fn compiled_examples(name: &str) -> Option<PathBuf> {
     let folder = tools::folder(name);
     write_header(&folder);
     std::fs::write(folder.join("hooks.c"), block("```c\n", 0)).unwrap();
-    let (spi, link) = block("```c\n", 2).split_once("endat_link link;").unwrap();
+    let spi = block_of(include_str!("../../docs/driver.md"), "```c\n", 0);
+    let (spi, link) = spi.split_once("endat_link link;").unwrap();
     let spi = format!(
         "#include \"endat_transports.h\"\n\
          endat_error board_transfer(void *context, const uint8_t *sent, uint8_t *received, uint32_t count);\n\

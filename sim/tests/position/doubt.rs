@@ -281,6 +281,41 @@ fn a_trigger_has_its_result_even_if_the_frame_is_lost() {
     }
 }
 
+/// The guard sees the register in the cycle of the trigger: no frame may begin in that cycle, or it ends with a second result.
+#[test]
+fn trigger_in_the_cycle_of_an_abort_has_one_result() {
+    let mut rig = open_rig();
+    let ready = rig.engine().clone();
+    for name in ["transaction.owing", "transaction.under_way"] {
+        let (net, _) = register(&ready, name);
+        let mut rig = Setup::card().on(ready.clone());
+        rig.run_for(US);
+        rig.engine().flip(net, 0);
+        rig.trigger();
+        rig.run_for(MS);
+        let causes: Vec<u64> = rig.results().iter().map(|r| r.cause).collect();
+        assert_eq!(causes, [cause::UPSET], "{name}");
+        assert_eq!(rig.frames(0).len(), 0, "{name}");
+        // An upset `owing` makes the trigger look lost, too: the next result may say so.
+        assert!(any_frame(&mut rig).fresh, "{name}");
+    }
+}
+
+/// `late` is of the frame that was announced without a start bit; the next frame begins without it.
+#[test]
+fn late_flag_of_an_earlier_frame_does_not_end_the_next_one() {
+    let mut rig = open_rig();
+    let ready = rig.engine().clone();
+    let (net, _) = register(&ready, "transaction.late");
+    // The phase in which the flag counts begins at once.
+    let mut setup = Setup::card();
+    setup.settings.first_low_extra_cycles = 0;
+    let mut rig = setup.on(ready);
+    rig.run_for(US);
+    rig.engine().flip(net, 0);
+    good_frame(&mut rig);
+}
+
 /// Another encoder, on a longer cable, is plugged in between two triggers: the delay is found anew, not one that is wrong by periods.
 #[test]
 fn data_that_was_high_between_frames_has_the_delay_measured_again() {

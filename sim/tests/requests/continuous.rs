@@ -159,6 +159,26 @@ fn a_run_is_left_at_every_moment() {
     left_every(250);
 }
 
+/// A run ends without a recovery time; that of the frame before the run is not compared with the limit.
+#[test]
+fn run_that_is_left_reports_no_recovery_time_of_an_earlier_frame() {
+    let mut rig = rig(
+        2_000_000,
+        encoder(29, LatchEdge::AfterLow),
+        LineConfig::cable(10.0),
+    );
+    // Longer than any tm of this encoder.
+    let earlier = rig.bench.get("recovery_cycles");
+    rig.bench.set("recovery_min_cycles", 8_000);
+    assert!((1..8_000).contains(&earlier), "{earlier}");
+    run(&mut rig, 3);
+    leave(&mut rig);
+    let causes: Vec<u64> = rig.bench.results().iter().map(|r| r.last_cause()).collect();
+    assert_eq!(causes, vec![cause::NONE; causes.len()]);
+    // The limit holds for a frame that has a recovery time.
+    assert_eq!(rig.position().cause, cause::RECOVERY_TOO_SHORT);
+}
+
 #[test]
 fn a_request_takes_the_line_and_the_next_trigger_goes_on() {
     let mut rig = rig(
