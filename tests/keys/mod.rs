@@ -84,7 +84,7 @@ fn the_reader_asks_for_the_keys_of_the_table_and_for_no_other() {
 
 /// A page in which the tables behind such a line are written from the table of keys.
 const MARK: &str =
-    "<!-- From the table of keys: UPDATE_EXPECT=1 cargo test --test emission keys writes it. -->\n";
+    "<!-- From the table of keys: UPDATE_EXPECT=1 cargo test --test configuration keys writes it. -->\n";
 
 #[test]
 fn the_tables_of_the_pages_are_those_of_the_keys() {
