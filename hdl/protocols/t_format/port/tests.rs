@@ -118,6 +118,24 @@ fn a_trigger_sends_its_request_and_silence_is_told_as_such() {
 }
 
 #[test]
+fn a_request_written_while_one_is_under_way_is_ignored() {
+    let sent = |again: bool| {
+        let mut rig = Rig::new();
+        rig.send(3, 0, 0);
+        rig.us(1);
+        assert!(rig.answer().2, "the first request is under way");
+        if again {
+            rig.send(3, 5, 6);
+        }
+        rig.us(60);
+        (rig.answer(), rig.falls.len())
+    };
+    let alone = sent(false);
+    assert_eq!(alone.0, (cause::NO_ANSWER, true, false));
+    assert_eq!(sent(true), alone);
+}
+
+#[test]
 fn what_a_trigger_must_not_send_is_refused() {
     for id in 0..16u8 {
         let mut rig = Rig::new();
