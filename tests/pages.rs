@@ -380,7 +380,7 @@ fn block<'p>(page: &'p str, words: &str, language: &str) -> &'p str {
 #[test]
 fn the_whole_card_on_the_page_on_buses_is_one() {
     let page = include_str!("../docs/bus.md");
-    let text = block(page, "A whole card behind a bus", "toml");
+    let text = block(page, "A whole card on a bus", "toml");
     let project = endat_gen::config::parse("page.toml", text).unwrap();
     let files = endat_gen::emit(&project).unwrap();
     assert!(files.iter().any(|f| f.path.ends_with("my_card_tb.v")));
@@ -406,7 +406,7 @@ fn the_bench_of_one_s_own_on_the_page_on_buses_has_a_position() {
         return;
     }
     let page = include_str!("../docs/bus.md");
-    let text = block(page, "A whole card behind a bus", "toml");
+    let text = block(page, "A whole card on a bus", "toml");
     let project = endat_gen::config::parse("page.toml", text).unwrap();
     let folder = tools::folder("own_bench");
     let card = folder.join("card");

@@ -27,7 +27,7 @@ impl Basis {
     }
 }
 
-/// What the page says before its tables.
+/// Text of the page before its tables.
 pub const HEAD: &str = "# Comparison
 
 Published systems, and the same work with this core. `cargo run --release -- bench comparison > docs/comparison.md` writes this page from runs of the presets with encoder models, and a test compares it. \
@@ -38,7 +38,7 @@ Sampling rate and initialisation differ from the presets. The lines have the del
 - *description*: a constant of the source
 - *words*: the linked pages and the tests show it
 ";
-/// What the page says after its tables.
+/// Text of the page after its tables.
 pub const STATUS: &str = include_str!("endat_if_status.md");
 
 /// A table of the page.

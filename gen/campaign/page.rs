@@ -7,10 +7,10 @@ use crate::error::GenError;
 use endat_sim::campaign::Shard;
 use std::fmt::Write;
 
-/// What the page says before the campaigns.
+/// Text of the page before the campaigns.
 const HEAD: &str = "# Reliability
 
-What happens to a port, or a whole card, when a stored bit flips, the line is disturbed or a frame is wrong? \
+These campaigns show the effect of a flipped bit, a disturbed line or a wrong frame on a port or a whole card. \
 Every figure is from simulation, with encoder models on lines. [campaigns.md](campaigns.md) says how to run the campaigns.
 
 - Results: `campaigns/results/*.csv`.
@@ -71,7 +71,7 @@ Then the host triggers until two rounds in a row are good, and reads the configu
 Clocks are fast and pauses short: 8 cycles per bit of the link, commands expire after 100 us, and the longest wait of a service is 16 ms.
 ";
 
-/// What the file with all tables says before them.
+/// Text of the file with all tables before them.
 const TABLES: &str = "# Tables of the campaigns
 
 All tables of [reliability.md](../../docs/reliability.md), which explains classes and marks. Columns of classes and marks are per mille of all cases of the row. `campaigns/run` writes this file.
@@ -80,7 +80,7 @@ All tables of [reliability.md](../../docs/reliability.md), which explains classe
 /// The line that links to the tables of a campaign.
 const LINK: &str = "Tables: [campaigns/results/tables.md](../campaigns/results/tables.md).";
 
-/// What the page says before the upsets by element.
+/// Text of the page before the upsets by element.
 const ELEMENTS: &str = "By element, as a fault analysis sorts them ([safety.md](safety.md)). This is no FMEDA: it has no failure rates and no permanent faults. Subjects are the EnDat port with all parts, and a card. An upset is
 
 - *safe* if every result equals that of an undisturbed run,
@@ -96,7 +96,7 @@ fn title(part: &Part) -> Option<(&'static str, &'static str)> {
         .rows()
         .all(|(row, _)| row.subject == CardSubject::Safety.name());
     Some(match part.identity.campaign.as_str() {
-        "upsets" if is_safety => ("Upsets of a card with every monitor", "The same card with all parts of `[safety]` ([safety.md](safety.md)); here the flip-flops of the channels are inverted, too. A second controller reads every result at the second interface. What it refuses counts as detected, a wrong position that it accepts as silent. The two controllers do not compare their results. No forced error is due within a case, and nobody reads the recovery counter."),
+        "upsets" if is_safety => ("Upsets of a card with every monitor", "The same card with all parts of `[safety]` ([safety.md](safety.md)); here the flip-flops of the channels are inverted, too. A second controller reads every result at the second interface. A refused position counts as detected, a wrong one that it accepts as silent. The two controllers do not compare their results. No forced error is due within a case, and nobody reads the recovery counter."),
         "upsets" => ("Upsets", "A case inverts one flip-flop at one moment of a frame, or of an activity of the card. System clock 32 MHz, 8 cycles per bit, 25 bits, 20 m."),
         "faults" => ("Faults of the line", "A fault begins in the frame (on), or ends in it (off), at every quarter of a bit, with each recovery time tm (000111: from 10 us) and cable. The T-format port and the SSI port have a line without delay, and their own faults. A single SSI position has no check sum."),
         "garbage" => ("Spoilt frames", "One spoilt frame in each case, at random. For the T-format port and the SSI port the encoder, the line or a setting is wrong. A random word passes a CRC of 5 bits with a chance of 1 in 32; with F1 and F2, 1 in 128."),

@@ -17,7 +17,7 @@ cargo run -- prove --config mine.toml --rtl out/mine   # your files as they are 
 The command prints a table like those below for your card, and a list of its modules with their number of properties. Exit code 1: a property does not hold. `--out DIR` writes each counterexample as waveform and drawing; `--json` prints data.
 The properties are at the end of each module, inside `` `ifdef FORMAL ``, so other provers can read them. Simulators and synthesis skip them.
 
-## What the command prints
+## Output
 
 | verdict | meaning |
 |---|---|
@@ -30,7 +30,7 @@ The properties are at the end of each module, inside `` `ifdef FORMAL ``, so oth
 
 The condition of a property is the part before its assertion, such as `if (a)` or `!a |`. The command searches a run of 40 cycles that meets it, with any values from the blocks inside. If that takes longer, such as a byte of a UART, it searches a state that the proofs allow. It lists these properties: whether a run reaches that state is not shown. In `--json`, `met` is `run` or `state`.
 
-## What a proof covers
+## Coverage
 
 - **Inputs.** A part of the card, such as a channel with all its blocks, is proved alone. Every input can have any value in every cycle: DATA, triggers, reset, and all settings, legal or not.
 - **Settings.** Without [guards](safety.md#guards-against-upsets) the settings of a channel do not change while it is busy, nor in the cycle of a trigger. `settings_stay` proves that for a card; with `bus = \"none\"` your design must ensure it.
@@ -44,11 +44,11 @@ Each property rejects cores that are broken on purpose (`tests/prove/mutations.r
 
 **An example: `forward_only`.** A frame has phases in a fixed order: clock parked, first LOW, frame, tail, recovery, pause after an abort, idle. Without a new trigger the phase never moves back in this order, except that an abort starts its pause from any phase. This holds from any register contents. With `phases_are_timed` and `phases_end` it follows that an upset cannot keep a frame in one phase for ever.
 
-## What no proof covers
+## Not covered
 
 - Modules without a part are only simulated: services, line monitor, direct outputs, recovery counter, second interface, trigger timers, the fronts of SPI and of the parallel bus.
 - \"A frame that is all position\" excludes frames with a request, additional data or a supplement.
-- Assumptions: `crc16_as_sent`: a byte of a set stays until it has been written. `never_overwritten`: a byte is taken only if one is there. `stored_apart`: an exchange ends at least four cycles after the one before. `request_as_asked`: the request ID stays during the exchange. `cells_timed`: a bit has at least four cycles.
+- Assumptions: `crc16_as_sent`: a byte of a set stays until it has been written. `never_overwritten`: a byte is taken only if one is available. `stored_apart`: an exchange ends at least four cycles after the one before. `request_as_asked`: the request ID stays during the exchange. `cells_timed`: a bit has at least four cycles.
 - `first_word_as_sent` covers the first word of a command, while no access of an earlier command is under way.
 - `restored` covers a position that is withdrawn before the next frame begins. On a card without requests the shift register of the receiver keeps the previous position; `word_kept` covers a word that it gets at rest.
 ";

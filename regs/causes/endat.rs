@@ -26,7 +26,7 @@ super::cause::causes! {
         "The encoder reports an alarm in F2, found independently of F1.",
         "As for f1.";
     DATA_NOT_FALLING = 7, "data_not_falling", "data not falling after the frame";
-        "DATA stayed HIGH after the frame for longer than recovery_max_ns: the encoder has more bits than configured, or a longer recovery time. With the flag tail_low DATA was LOW a clock after the CRC instead: the encoder has another width, or does not hold DATA HIGH for its recovery time. A wrong CRC and alarms of the same frame stand in its flags.",
+        "DATA stayed HIGH after the frame for longer than recovery_max_ns: the encoder has more bits than configured, or a longer recovery time. With the flag tail_low DATA was LOW a clock after the CRC instead: the encoder has another width, or does not hold DATA HIGH for its recovery time. The flags of the result also show a wrong CRC and alarms of the same frame.",
         "Compare position_bits and recovery_max_ns with the data sheet. An encoder that ends its frame LOW is none of EnDat.";
     TRIGGER_OVERRUN = 8, "trigger_overrun", "trigger overrun";
         "A trigger came while a frame or a T-format exchange was under way; its position is good.",
@@ -53,7 +53,7 @@ super::cause::causes! {
         "The frame took longer than limits.watchdog_us.",
         "Look at limits.watchdog_us and at the encoder's times.";
     OWN_ECHO = 16, "own_echo", "echo of the own command";
-        "What came back is the card's own mode command.",
+        "The card received its own mode command.",
         "Look for a converter that sends back what it gets, or a pair that is swapped.";
     RECOVERY_TOO_SHORT = 17, "recovery_too_short", "recovery time too short";
         "DATA fell before limits.recovery_min_cycles: the encoder has another recovery time than the card; the position is good.",
