@@ -15,6 +15,9 @@ pub enum Reader {
     Verilator,
 }
 
+/// Arguments for Verilator where its warnings are of no interest.
+pub const QUIET: [&str; 3] = ["-Wno-fatal", "-Wno-lint", "-Wno-style"];
+
 /// Both languages, and both programs.
 pub const LINTERS: [Reader; 3] = [
     Reader::Icarus("-g2005"),
@@ -64,7 +67,8 @@ pub fn passes(text: &str) -> bool {
 }
 
 impl Reader {
-    const fn program(self) -> &'static str {
+    /// The program that compiles or checks.
+    pub const fn program(self) -> &'static str {
         match self {
             Self::Icarus(_) => "iverilog",
             Self::Verilator => "verilator",
@@ -100,6 +104,26 @@ impl Reader {
         Ok((!is_silent).then_some(text))
     }
 
+    /// Arguments that build the program of a bench in a folder; its files follow them.
+    pub fn builds(self, top: &str) -> Vec<&str> {
+        match self {
+            Self::Icarus(language) => vec![language, "-s", top, "-o", "sim.vvp"],
+            // Optimised, tasks of a bench take minutes to compile, to save seconds of its run.
+            Self::Verilator => {
+                let fast = ["--binary", "--timing", "-MAKEFLAGS", "OPT_FAST=-O0"];
+                [&fast[..], &["--top-module", top, "-o", "sim"]].concat()
+            }
+        }
+    }
+
+    /// The program that runs such a bench, and its first arguments; plusargs follow them.
+    pub const fn starts(self) -> (&'static str, &'static [&'static str]) {
+        match self {
+            Self::Icarus(_) => ("vvp", &["-n", "sim.vvp"]),
+            Self::Verilator => ("./obj_dir/sim", &[]),
+        }
+    }
+
     /// Builds and runs the bench of an emission in a folder, with plusargs; whether it has passed, with an exit code that says so, and what
     /// was said.
     pub fn play(
@@ -112,25 +136,15 @@ impl Reader {
         let Some(bench) = bench else {
             return Ok((false, "there is no bench".into()));
         };
-        let top = bench.trim_end_matches(".v");
-        let mut arguments = match self {
-            Self::Icarus(language) => vec![language, "-s", top, "-o", "sim.vvp", bench],
-            Self::Verilator => {
-                // Optimised, tasks of a bench take minutes to compile, to save seconds of its run.
-                let build = ["--binary", "--timing", "-MAKEFLAGS", "OPT_FAST=-O0"];
-                let build = [&build[..], &["--top-module", top, "-o", "sim"]].concat();
-                [&build[..], &[bench]].concat()
-            }
-        };
+        let mut arguments = self.builds(bench.trim_end_matches(".v"));
+        arguments.push(bench);
         arguments.extend(&core);
         let (is_good, text) = run(self.program(), folder, &arguments)?;
         if !is_good || text.contains("arning") {
             return Ok((false, text));
         }
-        let (is_good, text) = match self {
-            Self::Icarus(_) => run("vvp", folder, &[&["-n", "sim.vvp"], plusargs].concat()),
-            Self::Verilator => run("./obj_dir/sim", folder, plusargs),
-        }?;
+        let (program, first) = self.starts();
+        let (is_good, text) = run(program, folder, &[first, plusargs].concat())?;
         Ok((is_good && passes(&text), text))
     }
 }

@@ -280,6 +280,18 @@ impl Expr {
         }
     }
 
+    /// The operands, to change them.
+    pub fn operands_mut(&mut self) -> Vec<&mut Expr> {
+        match &mut self.kind {
+            ExprKind::Constant(_)
+            | ExprKind::Variant(..)
+            | ExprKind::Parameter(_)
+            | ExprKind::Net(_) => vec![],
+            ExprKind::Extend(a) | ExprKind::Slice(a, _) | ExprKind::Unary(_, a) => vec![a],
+            ExprKind::Select(a, b) | ExprKind::Binary(_, a, b) => vec![a, b],
+        }
+    }
+
     /// Calls `visit` for every net that the expression reads.
     pub fn for_each_net(&self, visit: &mut dyn FnMut(NetId)) {
         if let ExprKind::Net(net) = self.kind {
@@ -292,16 +304,11 @@ impl Expr {
 
     /// Calls `change` for every net that the expression reads.
     pub fn for_each_net_mut(&mut self, change: &mut dyn FnMut(&mut NetId)) {
-        match &mut self.kind {
-            ExprKind::Net(net) => change(net),
-            ExprKind::Constant(_) | ExprKind::Variant(..) | ExprKind::Parameter(_) => {}
-            ExprKind::Extend(a) | ExprKind::Slice(a, _) | ExprKind::Unary(_, a) => {
-                a.for_each_net_mut(change)
-            }
-            ExprKind::Select(a, b) | ExprKind::Binary(_, a, b) => {
-                a.for_each_net_mut(change);
-                b.for_each_net_mut(change);
-            }
+        if let ExprKind::Net(net) = &mut self.kind {
+            change(net);
+        }
+        for operand in self.operands_mut() {
+            operand.for_each_net_mut(change);
         }
     }
 }

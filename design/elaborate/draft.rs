@@ -1,7 +1,7 @@
 //! A module under construction: its names and nets, and the checks on them.
 
 use super::design::*;
-use super::names::{problem_of_net, verilog_name};
+use super::names::{free_name, problem_of_net, verilog_name};
 use super::plan::{Dependencies, PlanError};
 use super::properties::selected;
 use super::scope::{child_port, Symbol};
@@ -59,20 +59,9 @@ impl Draft<'_> {
 
     /// The first of some names that no field has; the last one gets a number if all are taken.
     pub(super) fn free_name_of<const N: usize>(&self, names: [String; N]) -> String {
-        // Verilog tells small letters from capitals, VHDL does not.
-        let is_taken = |name: &String| {
-            let fields = self.block.atoms.iter().map(|a| &a.name);
-            let nets = self.module.nets.iter().map(|n| &n.name);
-            let mut all = fields.chain(&self.child_names).chain(nets);
-            all.any(|taken| taken.eq_ignore_ascii_case(name))
-        };
-        let last = names.last().cloned().unwrap_or_default();
-        let numbered = (2..).map(|number| format!("{last}_{number}"));
-        names
-            .into_iter()
-            .chain(numbered)
-            .find(|name| !is_taken(name))
-            .unwrap_or_default()
+        let fields = self.block.atoms.iter().map(|a| &a.name);
+        let nets = self.module.nets.iter().map(|n| &n.name);
+        free_name(names, fields.chain(&self.child_names).chain(nets))
     }
 
     pub(super) fn child_port(&mut self, child: &str, port: &str, net: NetId, direction: Direction) {

@@ -30,6 +30,7 @@ mod words;
 pub use design::*;
 pub use execute::{binary, evaluate, execute};
 pub use finish::block_name;
+pub(crate) use names::free_name;
 pub(crate) use pieces::{row, Piece};
 use rust_hdl::prelude::Block;
 pub use words::emitted_name;

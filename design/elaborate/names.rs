@@ -272,6 +272,24 @@ pub(super) fn verilog_name(key: &str) -> String {
     name
 }
 
+/// The first of some names that is not taken; the last one gets a number if all are.
+pub(crate) fn free_name<'a>(
+    names: impl IntoIterator<Item = String>,
+    taken: impl Iterator<Item = &'a String> + Clone,
+) -> String {
+    // Verilog tells small letters from capitals, VHDL does not.
+    let is_free = |name: &str| !taken.clone().any(|taken| taken.eq_ignore_ascii_case(name));
+    let mut last = String::new();
+    for name in names {
+        if is_free(&name) {
+            return name;
+        }
+        last = name;
+    }
+    let mut numbered = (2..).map(|number: usize| format!("{last}_{number}"));
+    numbered.find(|name| is_free(name)).unwrap_or_default()
+}
+
 /// `ClockGen` becomes `clock_gen`.
 pub(super) fn snake_case(name: &str) -> String {
     let mut out = String::new();

@@ -3,7 +3,7 @@
 use crate::elaborate::{mask, Module, NetId, Statement};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What a process is like for those that read its nets.
+/// Bits that a process drives on every path, and nets that it reads before it has driven them.
 #[derive(Default)]
 pub(super) struct Assigned {
     /// Bits of each net that every way through the process assigns.
@@ -36,12 +36,7 @@ impl Assigned {
         always: &mut BTreeMap<NetId, u128>,
     ) {
         for statement in statements {
-            let mut own = statement.clone();
-            if !matches!(own, Statement::Assign { .. }) {
-                // Only the condition: what is inside is walked below.
-                own = without_blocks(own);
-            }
-            own.for_each_expr(&mut |expr| {
+            statement.for_each_own_expr(&mut |expr| {
                 expr.for_each_net(&mut |net| {
                     let all = mask(module.nets[net].width_bits);
                     let bits = always.get(&net).copied().unwrap_or(0);
@@ -75,21 +70,4 @@ impl Assigned {
             }
         }
     }
-}
-
-fn without_blocks(mut statement: Statement) -> Statement {
-    match &mut statement {
-        Statement::Assign { .. } => {}
-        Statement::If {
-            then, otherwise, ..
-        } => {
-            then.clear();
-            otherwise.clear();
-        }
-        Statement::Case { arms, default, .. } => {
-            arms.iter_mut().for_each(|(_, block)| block.clear());
-            default.clear();
-        }
-    }
-    statement
 }

@@ -6,44 +6,11 @@ use crate::elaborate::{mask, BinaryOp, Design, Expr, ExprKind, Module, UnaryOp};
 /// The expression with one change in it, for every change.
 pub(super) fn changes(design: &Design, module: &Module, expr: &Expr) -> Vec<(Kind, Expr)> {
     let mut found = own(design, module, expr);
-    let with = |kind: ExprKind| Expr {
-        width_bits: expr.width_bits,
-        kind,
-    };
-    let inner = |operand: &Expr| changes(design, module, operand);
-    let boxed = |operand: &Expr| Box::new(operand.clone());
-    match &expr.kind {
-        ExprKind::Constant(_)
-        | ExprKind::Variant(..)
-        | ExprKind::Parameter(_)
-        | ExprKind::Net(_) => {}
-        ExprKind::Extend(a) => {
-            let each = inner(a).into_iter();
-            found.extend(each.map(|(kind, a)| (kind, with(ExprKind::Extend(Box::new(a))))));
-        }
-        ExprKind::Slice(a, low) => {
-            let each = inner(a).into_iter();
-            found.extend(each.map(|(kind, a)| (kind, with(ExprKind::Slice(Box::new(a), *low)))));
-        }
-        ExprKind::Unary(op, a) => {
-            let each = inner(a).into_iter();
-            found.extend(each.map(|(kind, a)| (kind, with(ExprKind::Unary(*op, Box::new(a))))));
-        }
-        ExprKind::Select(a, b) => {
-            for (kind, a) in inner(a) {
-                found.push((kind, with(ExprKind::Select(Box::new(a), boxed(b)))));
-            }
-            for (kind, b) in inner(b) {
-                found.push((kind, with(ExprKind::Select(boxed(a), Box::new(b)))));
-            }
-        }
-        ExprKind::Binary(op, a, b) => {
-            for (kind, a) in inner(a) {
-                found.push((kind, with(ExprKind::Binary(*op, Box::new(a), boxed(b)))));
-            }
-            for (kind, b) in inner(b) {
-                found.push((kind, with(ExprKind::Binary(*op, boxed(a), Box::new(b)))));
-            }
+    for (index, operand) in expr.operands().into_iter().enumerate() {
+        for (kind, changed) in changes(design, module, operand) {
+            let mut with = expr.clone();
+            *with.operands_mut()[index] = changed;
+            found.push((kind, with));
         }
     }
     found

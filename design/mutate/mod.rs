@@ -15,11 +15,9 @@ mod sites;
 pub use schema::{schema, CHOICE_BITS};
 pub use sites::mutations;
 
-use crate::elaborate::{
-    Design, Expr, ExprKind, Module, ModuleId, Net, NetId, Process, Register, Statement,
-};
+use crate::elaborate::{free_name, Design, Expr, Module, ModuleId, Net, NetId, Process, Statement};
 
-/// What a change is like.
+/// Kind of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
     /// A bit of an assigned value, or of an input of a child, is always 0 or always 1.
@@ -73,14 +71,14 @@ impl Kind {
 pub struct Mutation {
     /// The module.
     pub module: ModuleId,
-    /// What the change is like.
+    /// Kind of the change.
     pub kind: Kind,
     /// Name of the net, register or connected port that the change is about; empty for a condition.
     pub about: String,
     change: Change,
 }
 
-/// Where a change is, and what is there instead.
+/// Place of a change, and its replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Change {
     /// Statements in the place of one.
@@ -151,20 +149,10 @@ fn replace(
         block.splice(index..=index, with(statement));
         return;
     };
-    let inner = match &mut block[*index] {
-        Statement::Assign { .. } => return,
-        Statement::If {
-            then, otherwise, ..
-        } => match inner {
-            0 => then,
-            _ => otherwise,
-        },
-        Statement::Case { arms, default, .. } => match arms.get_mut(*inner) {
-            Some((_, arm)) => arm,
-            None => default,
-        },
-    };
-    replace(inner, rest, with);
+    let mut blocks = block[*index].blocks_mut();
+    if let Some(inner) = blocks.get_mut(*inner) {
+        replace(inner, rest, with);
+    }
 }
 
 /// Puts a new net between an input of a child and what it is connected to.
@@ -179,18 +167,12 @@ fn cut(module: &mut Module, instance: usize, port: usize) -> NetId {
 }
 
 fn new_net(module: &mut Module, wanted: &str, width_bits: usize) -> NetId {
-    let is_taken = |name: &str| {
-        let nets = module.nets.iter().map(|net| &net.name);
-        let instances = module.instances.iter().map(|instance| &instance.name);
-        let parameters = module.parameters.iter().map(|parameter| &parameter.name);
-        let memories = module.memories.iter().map(|memory| &memory.name);
-        let mut names = nets.chain(instances).chain(parameters).chain(memories);
-        names.any(|taken| taken.eq_ignore_ascii_case(name))
-    };
-    let mut name = wanted.to_owned();
-    while is_taken(&name) {
-        name.push('x');
-    }
+    let nets = module.nets.iter().map(|net| &net.name);
+    let instances = module.instances.iter().map(|instance| &instance.name);
+    let parameters = module.parameters.iter().map(|parameter| &parameter.name);
+    let memories = module.memories.iter().map(|memory| &memory.name);
+    let taken = nets.chain(instances).chain(parameters).chain(memories);
+    let name = free_name([wanted.to_owned()], taken);
     module.nets.push(Net {
         name,
         width_bits,
@@ -207,30 +189,4 @@ fn assign(net: NetId, value: Expr) -> Statement {
         low_bit: 0,
         value,
     }
-}
-
-/// What a register delays, if nothing else happens to it: another register or an input.
-fn delayed(module: &Module, register: &Register) -> Option<NetId> {
-    let mut found = vec![];
-    for process in &module.processes {
-        for statement in &process.statements {
-            statement.for_each_target(&mut |net, _, _| {
-                if net == register.next {
-                    found.push(statement);
-                }
-            });
-        }
-    }
-    let [Statement::Assign { value, .. }] = &found[..] else {
-        return None;
-    };
-    let ExprKind::Net(from) = value.kind else {
-        return None;
-    };
-    let is_register = module.registers.iter().any(|r| r.q == from);
-    let is_input = module.ports.iter().any(|port| {
-        port.net == from && port.direction == crate::elaborate::Direction::Input && !port.is_clock
-    });
-    let is_whole = value.width_bits == module.nets[register.q].width_bits;
-    (is_whole && from != register.q && (is_register || is_input)).then_some(from)
 }

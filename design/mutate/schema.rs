@@ -47,7 +47,7 @@ pub fn schema(design: &Design, mutations: &[Mutation]) -> (Design, String) {
     (design, name)
 }
 
-/// What is at each place instead, with the number that chooses it.
+/// Replacements at each place, each with the number that chooses it.
 type Places<'a, Place, With> = BTreeMap<Place, Vec<(u128, &'a With)>>;
 
 /// Puts the mutations of one module into it.
@@ -118,7 +118,7 @@ fn change(module: &mut Module, choice: NetId, mutations: Vec<(&Mutation, u128)>)
     stage(module, &subject, stages);
 }
 
-/// Wires that stand for a register while their mutant is chosen, those that others delay first.
+/// Wires that replace a register while their mutant is chosen, those that others delay first.
 fn stage(module: &mut Module, subject: &Expr, mut stages: BTreeMap<usize, (NetId, u128)>) {
     let mut first = 0;
     while !stages.is_empty() {

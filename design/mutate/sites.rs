@@ -1,9 +1,10 @@
 //! Every mutation of a module.
 
 use super::assigned::Assigned;
-use super::{delayed, expr, replace, Change, Kind, Mutation, Path};
+use super::{expr, replace, Change, Kind, Mutation, Path};
 use crate::elaborate::{
-    targets, Design, Direction, Expr, ExprKind, Module, ModuleId, NetId, Statement, UnaryOp,
+    targets, Design, Direction, Expr, ExprKind, Module, ModuleId, NetId, Register, Statement,
+    UnaryOp,
 };
 
 /// Every mutation of one module, in a fixed order.
@@ -83,7 +84,7 @@ pub fn mutations(design: &Design, id: ModuleId) -> Vec<Mutation> {
     found
 }
 
-/// What a register delays, unless registers delay each other in a ring, which would be a loop of wires.
+/// The net that a register delays; none if registers delay each other in a ring, which would be a loop of wires.
 fn stage(module: &Module, index: usize) -> Option<NetId> {
     let first = delayed(module, &module.registers[index])?;
     let mut at = first;
@@ -97,6 +98,33 @@ fn stage(module: &Module, index: usize) -> Option<NetId> {
         }
     }
     None
+}
+
+/// The net that a register delays, if its only assignment is that net: another register or an input.
+fn delayed(module: &Module, register: &Register) -> Option<NetId> {
+    let mut found = vec![];
+    for process in &module.processes {
+        for statement in &process.statements {
+            statement.for_each_target(&mut |net, _, _| {
+                if net == register.next {
+                    found.push(statement);
+                }
+            });
+        }
+    }
+    let [Statement::Assign { value, .. }] = &found[..] else {
+        return None;
+    };
+    let ExprKind::Net(from) = value.kind else {
+        return None;
+    };
+    let is_register = module.registers.iter().any(|r| r.q == from);
+    let is_input = module
+        .ports
+        .iter()
+        .any(|port| port.net == from && port.direction == Direction::Input && !port.is_clock);
+    let is_whole = value.width_bits == module.nets[register.q].width_bits;
+    (is_whole && from != register.q && (is_register || is_input)).then_some(from)
 }
 
 /// Every statement with its path, those inside after the one that holds them.
@@ -116,7 +144,7 @@ fn walk<'a>(
     }
 }
 
-/// What one statement may be instead.
+/// Replacements of one statement.
 fn alternatives(
     design: &Design,
     module: &Module,

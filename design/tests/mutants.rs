@@ -79,7 +79,7 @@ fn only_in(text: &str, other: &str) -> Vec<String> {
     missing.map(str::to_owned).collect()
 }
 
-/// What mutations of one kind remove and add.
+/// Lines that mutations of one kind remove and add.
 fn edits(kind: Kind) -> Vec<(Vec<String>, Vec<String>)> {
     let design = sample();
     let print = |design: &Design| verilog::print(design, &Header::default());

@@ -255,31 +255,21 @@ impl Host {
         }
     }
 
-    /// Status and position from registers that follow the results; none where a host reads words of the map.
-    fn newest(&self, bench: &mut Bench<Compiled>) -> Option<Vec<u32>> {
-        match self {
-            Self::Controller(controller) => controller.newest(bench),
-            Self::Uart(_) => None,
-        }
-    }
-
-    /// Status and position of channel 0; registers that follow the results are read until they differ from `before`.
-    fn read(
-        &mut self,
-        bench: &mut Bench<Compiled>,
-        before: Option<Vec<u32>>,
-    ) -> Result<Vec<u32>, GenError> {
+    /// Status and position of channel 0, from the cycle of the result on.
+    fn read(&mut self, bench: &mut Bench<Compiled>) -> Result<Vec<u32>, GenError> {
         let end = bench.cycle() + READ_CYCLES_MAX;
-        while before.is_some() && bench.cycle() < end {
-            let words = self.newest(bench);
-            if words != before {
-                return Ok(words.unwrap_or_default());
-            }
-        }
         let address = at(&RESULT, "status")?;
         let uart = match self {
             Self::Controller(controller) => {
-                return Ok(controller.read(bench, address, WORDS, true));
+                // Registers that follow the results show the position before at first.
+                let Some(before) = controller.newest(bench) else {
+                    return Ok(controller.read(bench, address, WORDS, true));
+                };
+                let mut words = before.clone();
+                while words == before && bench.cycle() < end {
+                    words = controller.newest(bench).unwrap_or_default();
+                }
+                return Ok(words);
             }
             Self::Uart(uart) => uart,
         };
@@ -345,12 +335,10 @@ fn link(project: &Project) -> Result<LinkLatency, GenError> {
         failure = Some("no position after the trigger".to_owned());
     }
     let result = bench.cycle() - CROP_CYCLES;
-    let (mut bench, host) = ready(project, engine.clone());
-    let before = host.newest(&mut bench);
     let (mut bench, mut host) = ready(project, engine);
     bench.trigger();
     bench.run_cycles(result - bench.cycle());
-    let words = host.read(&mut bench, before)?;
+    let words = host.read(&mut bench)?;
     Ok(LinkLatency {
         bus: project.bus.name(),
         system_hz: hz,

@@ -325,11 +325,11 @@ impl Proof<'_> {
 }
 
 /// Whether a property that holds from the start values no longer does in the parts that hold a module. None where the module is in no part that
-/// is proved. Unless `first` is empty, the module is the one that `first` has read from the file of the emitted one and changed.
+/// is proved. With `first` the module is the one that these commands read from the file of the emitted one and change.
 pub(crate) fn refutes(
     subject: &Subject,
     module: usize,
-    first: &str,
+    first: Option<&str>,
 ) -> Result<Option<bool>, GenError> {
     let design = &subject.design;
     let own = rtl_design::verilog::file_name(&design.modules[module].name);
@@ -344,7 +344,7 @@ pub(crate) fn refutes(
         let mut files = subject.files.clone();
         files.push(harness.clone());
         crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
-        files.retain(|file| first.is_empty() || file.path != own);
+        files.retain(|file| first.is_none() || file.path != own);
         if tree
             .iter()
             .any(|index| !design.modules[*index].properties.is_empty())
@@ -354,7 +354,7 @@ pub(crate) fn refutes(
                 files: &files,
                 begins: Begins::AtStart,
                 has_initial_values: design.has_initial_values,
-                first,
+                first: first.unwrap_or_default(),
             };
             if !proof.run()?.failed.is_empty() {
                 return Ok(Some(true));
@@ -363,7 +363,13 @@ pub(crate) fn refutes(
         }
         if let Some(claim) = fronts::claim_of(&design.modules[part]) {
             files.retain(|file| file.path != harness.path);
-            let flat = fronts::flat(design, &files, part, folder.path(), first)?;
+            let flat = fronts::flat(
+                design,
+                &files,
+                part,
+                folder.path(),
+                first.unwrap_or_default(),
+            )?;
             let answer = claim.ask(&design.modules[part], folder.path(), &flat)?;
             if !answer.failed.is_empty() {
                 return Ok(Some(true));

@@ -113,8 +113,8 @@ impl Statement {
         });
     }
 
-    /// Calls `visit` for every expression in the statement.
-    pub fn for_each_expr(&self, visit: &mut dyn FnMut(&Expr)) {
+    /// Calls `visit` for every expression of the statement itself, but not for those of the statements inside.
+    pub fn for_each_own_expr(&self, visit: &mut dyn FnMut(&Expr)) {
         match self {
             Statement::Assign { value, .. } => visit(value),
             Statement::If { condition, .. } => visit(condition),
@@ -123,6 +123,11 @@ impl Statement {
                 arms.iter().for_each(|(value, _)| visit(value));
             }
         }
+    }
+
+    /// Calls `visit` for every expression in the statement.
+    pub fn for_each_expr(&self, visit: &mut dyn FnMut(&Expr)) {
+        self.for_each_own_expr(visit);
         for block in self.blocks() {
             for statement in block {
                 statement.for_each_expr(visit);
@@ -154,18 +159,7 @@ impl Statement {
 
     /// Calls `change` for every statement inside, at any depth.
     fn for_each_inner_mut(&mut self, change: &mut dyn FnMut(&mut Statement)) {
-        let blocks: Vec<&mut Vec<Statement>> = match self {
-            Statement::Assign { .. } => vec![],
-            Statement::If {
-                then, otherwise, ..
-            } => vec![then, otherwise],
-            Statement::Case { arms, default, .. } => arms
-                .iter_mut()
-                .map(|(_, block)| block)
-                .chain([default])
-                .collect(),
-        };
-        for statement in blocks.into_iter().flatten() {
+        for statement in self.blocks_mut().into_iter().flatten() {
             change(statement);
             statement.for_each_inner_mut(change);
         }
@@ -220,6 +214,21 @@ impl Statement {
                 .iter()
                 .map(|(_, block)| &block[..])
                 .chain([&default[..]])
+                .collect(),
+        }
+    }
+
+    /// The same blocks, to change them.
+    pub fn blocks_mut(&mut self) -> Vec<&mut Vec<Statement>> {
+        match self {
+            Statement::Assign { .. } => vec![],
+            Statement::If {
+                then, otherwise, ..
+            } => vec![then, otherwise],
+            Statement::Case { arms, default, .. } => arms
+                .iter_mut()
+                .map(|(_, block)| block)
+                .chain([default])
                 .collect(),
         }
     }

@@ -2,9 +2,9 @@
 
 use super::list::{files, reading_bare, yosys_must, Mutation};
 use super::stimulus::CYCLES;
-use super::{alone, recorder, Emission};
+use super::{alone, once, recorder, Emission};
 use crate::artifact::Artifact;
-use crate::error::{shorten, GenError};
+use crate::error::GenError;
 use crate::prove::Subject;
 use crate::{readers, scratch, tools};
 use rtl_design::elaborate::Module;
@@ -89,11 +89,7 @@ impl Program {
         }
         let (whole, text) = program.play(&[])?;
         if !whole.passes {
-            return Err(GenError::input(format!(
-                "campaign mutants: {}: the bench does not pass while no mutant is chosen: {}; mend that first",
-                subject.name,
-                shorten(text.trim())
-            )));
+            return Err(emission.not_passing(&text));
         }
         program.whole = whole;
         Ok(program)
@@ -195,16 +191,7 @@ fn mutated_text(emission: &Emission, module: &Module, one: &Mutated) -> Result<S
         "reg [{}:0] {CONTROL}; initial if (!$value$plusargs(\"mutant=%d\", {CONTROL})) {CONTROL} = 0;",
         CONTROL_BITS - 1
     );
-    match text.matches(&wire).count() {
-        1 => Ok(format!(
-            "`timescale 1ns / 1ps\n{}",
-            text.replace(&wire, &reg)
-        )),
-        count => Err(GenError::fault(
-            "campaign mutants",
-            &format!("{}: {wire} stands there {count} times", module.name),
-        )),
-    }
+    Ok("`timescale 1ns / 1ps\n".to_owned() + &once(&text, &wire, &reg)?)
 }
 
 /// The program of the bench.
@@ -251,9 +238,8 @@ fn build(folder: &Path, top: &str, files: &[Artifact], optimised: &str) -> Resul
     let fast = format!("OPT_FAST={optimised}");
     let program = program(top);
     let (made, name) = program.split_once('/').unwrap_or(("obj_dir", "sim"));
-    let quiet = ["-Wno-fatal", "-Wno-lint", "-Wno-style"];
     let mut arguments = vec!["--binary", "--timing", "-O3"];
-    arguments.extend(quiet);
+    arguments.extend(readers::QUIET);
     arguments.extend(["-MAKEFLAGS", &fast, "--Mdir", made, "-o", name]);
     arguments.extend(["--top-module", top]);
     arguments.extend(files.iter().map(|f| f.path.as_str()));

@@ -2,11 +2,11 @@
 //!
 //! The design is changed before it is printed, so whoever reads the text gets the same wrong core.
 
-use super::Emission;
+use super::{once, Emission};
 use crate::artifact::Artifact;
-use crate::error::{shorten, GenError};
+use crate::error::GenError;
 use crate::prove::{refutes, Subject};
-use crate::readers::{is_core, passes, Reader};
+use crate::readers::{is_core, passes, Reader, QUIET};
 use crate::{scratch, sources, tools};
 use endat_sim::rng::Rng;
 use rtl_design::elaborate::Design;
@@ -59,7 +59,7 @@ pub fn proof_sees(emission: &Emission, mutation: &Mutation) -> Result<bool, GenE
     let Some(module) = module else {
         return Ok(false);
     };
-    Ok(refutes(&subject, module, "")?.unwrap_or(false))
+    Ok(refutes(&subject, module, None)?.unwrap_or(false))
 }
 
 /// A bench with one card, or with a card and its mutants.
@@ -93,11 +93,7 @@ impl Chosen {
         if passes(&text) {
             return Ok(program);
         }
-        Err(GenError::input(format!(
-            "campaign mutants: {}: the bench does not pass while no mutant is chosen: {}; mend that first",
-            emission.subject.name,
-            shorten(text.trim())
-        )))
+        Err(emission.not_passing(&text))
     }
 
     /// One mutant of a card alone, printed like any other card: it is chosen by number 0.
@@ -122,16 +118,11 @@ impl Chosen {
         files.push(bench.clone());
         crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
         let top = bench.path.trim_end_matches(".v");
-        let (program, mut arguments) = match reader {
-            Reader::Icarus(language) => ("iverilog", vec![language, "-s", top, "-o", "sim.vvp"]),
-            Reader::Verilator => {
-                let quiet = ["-Wno-fatal", "-Wno-lint", "-Wno-style"];
-                // Optimised, tasks of a bench take minutes to compile, to save seconds of its run.
-                let fast = ["--binary", "--timing", "-MAKEFLAGS", "OPT_FAST=-O0"];
-                let names = ["--top-module", top, "-o", "sim"];
-                ("verilator", [&fast[..], &quiet, &names].concat())
-            }
-        };
+        let program = reader.program();
+        let mut arguments = reader.builds(top);
+        if reader == Reader::Verilator {
+            arguments.extend(QUIET);
+        }
         arguments.extend(files.iter().map(|file| file.path.as_str()));
         let ran = tools::run(program, folder.path(), &arguments)?;
         if ran.is_good {
@@ -145,28 +136,9 @@ impl Chosen {
 
     fn play(&self, number: usize) -> Result<String, GenError> {
         let chosen = format!("+mutant={number}");
-        let folder = self.folder.path();
-        let ran = match self.reader {
-            Reader::Icarus(_) => {
-                let arguments = ["-n", "sim.vvp", &chosen, "+first"];
-                tools::run_within("vvp", folder, &arguments, LONGEST)
-            }
-            Reader::Verilator => {
-                let program = folder.join("obj_dir/sim").display().to_string();
-                tools::run_within(&program, folder, &[&chosen, "+first"], LONGEST)
-            }
-        }?;
+        let (program, first) = self.reader.starts();
+        let arguments = [first, &[&chosen, "+first"]].concat();
+        let ran = tools::run_within(program, self.folder.path(), &arguments, LONGEST)?;
         Ok(ran.map_or_else(String::new, |ran| ran.text()))
-    }
-}
-
-/// Replaces what a bench has exactly once.
-fn once(text: &str, from: &str, to: &str) -> Result<String, GenError> {
-    match text.matches(from).count() {
-        1 => Ok(text.replace(from, to)),
-        count => Err(GenError::fault(
-            "campaign mutants",
-            &format!("{from}: is in the bench {count} times"),
-        )),
     }
 }

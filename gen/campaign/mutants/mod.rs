@@ -25,13 +25,16 @@ pub use page::{page, table};
 
 use crate::artifact::{sha256, Artifact};
 use crate::config::{load_any_preset, parse_any, Configuration};
-use crate::error::GenError;
+use crate::error::{shorten, GenError};
 use crate::prove::{self, Subject};
 use crate::readers::is_bench;
 use bench::{Mutated, Program};
 use endat_sim::campaign::{Campaign, Row, Shard, Tally};
 use list::Mutation;
 use std::ops::Range;
+
+/// Begins the errors of the campaign.
+const CONTEXT: &str = "campaign mutants";
 
 /// The campaign's name.
 pub const NAME: &str = "mutants";
@@ -83,6 +86,26 @@ impl Emission {
             Some((name, text)) => parse_any(&format!("{name}.toml"), text)?,
             None => load_any_preset(name)?,
         })
+    }
+
+    /// The error for a bench that complains, by its output, while no mutant is chosen.
+    fn not_passing(&self, text: &str) -> GenError {
+        GenError::input(format!(
+            "{CONTEXT}: {}: the bench does not pass while no mutant is chosen: {}; mend that first",
+            self.subject.name,
+            shorten(text.trim())
+        ))
+    }
+}
+
+/// Replaces a text that occurs exactly once.
+fn once(text: &str, from: &str, to: &str) -> Result<String, GenError> {
+    match text.matches(from).count() {
+        1 => Ok(text.replace(from, to)),
+        count => Err(GenError::fault(
+            CONTEXT,
+            &format!("{from}: occurs {count} times"),
+        )),
     }
 }
 
@@ -257,7 +280,7 @@ impl Mutants {
         for below in list::children(subject, module) {
             first += &format!("delete ={below}\n");
         }
-        Ok(match prove::refutes(subject, group.module, &first)? {
+        Ok(match prove::refutes(subject, group.module, Some(&first))? {
             Some(true) => Fate::Proof,
             _ => Fate::Survivor,
         })

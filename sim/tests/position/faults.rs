@@ -274,15 +274,21 @@ fn data_that_does_not_fall_withdraws_the_position_and_brings_back_the_one_before
     assert_eq!((rig.violations(0), rig.conflicts(0)), (&[][..], vec![]));
 }
 
+/// A port that brings the previous position back.
+const RESTORING: Features = Features {
+    restore: true,
+    ..Features::NONE
+};
+/// The same, with a separate copy of that position.
+const WITH_COPY: Features = Features {
+    second_receiver: true,
+    ..RESTORING
+};
+
 /// Without `restore` no position is valid after one that was withdrawn; with a copy of its own the position before comes back as well.
 #[test]
 fn a_withdrawn_position_gives_way_as_its_port_says() {
-    let with_copy = Features {
-        restore: true,
-        second_receiver: true,
-        ..Features::NONE
-    };
-    for (features, valid) in [(Features::NONE, 0), (with_copy, 1), (Features::GUARDED, 1)] {
+    for (features, valid) in [(Features::NONE, 0), (WITH_COPY, 1), (Features::GUARDED, 1)] {
         let setup = Setup::card().defect(1, Defect::LateFall(MS)).with(features);
         let mut rig = setup.ready();
         let before = good_frame(&mut rig);
@@ -300,16 +306,7 @@ fn a_withdrawn_position_gives_way_as_its_port_says() {
 /// A port that restores has nothing to bring back yet.
 #[test]
 fn withdrawal_of_the_first_position_leaves_no_valid_one() {
-    let with_copy = Features {
-        restore: true,
-        second_receiver: true,
-        ..Features::NONE
-    };
-    let restoring = Features {
-        restore: true,
-        ..Features::NONE
-    };
-    for features in [restoring, with_copy, Features::GUARDED] {
+    for features in [RESTORING, WITH_COPY, Features::GUARDED] {
         // Frame 0 measures the delay and brings no position.
         let setup = Setup::card().defect(1, Defect::LateFall(MS)).with(features);
         let mut rig = setup.fresh();
