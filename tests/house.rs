@@ -2,6 +2,7 @@
 //! say what they cover.
 
 mod suite;
+mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
