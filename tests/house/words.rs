@@ -73,12 +73,9 @@ fn prose(line: &str) -> String {
 fn begins_with_what(line: &str) -> bool {
     let ends = [". ", "? ", "! ", ": ", "| "];
     line.match_indices("What ").any(|(at, _)| {
-        let before = &line[..at];
-        let is_first = before.trim_matches(['-', '*', '#', '>', ' ']).is_empty();
-        is_first
-            || ends
-                .iter()
-                .any(|end| before.trim_end_matches('*').ends_with(end))
+        let before = line[..at].replace('*', "");
+        let is_first = before.trim_matches(['-', '#', '>', ' ']).is_empty();
+        is_first || ends.iter().any(|end| before.ends_with(end))
     })
 }
 
