@@ -24,7 +24,7 @@ fn words() -> Vec<(String, u16, &'static str)> {
 }
 
 /// Compares with the committed list; `UPDATE_EXPECT` renews it. Its first line is the version of the map. A changed list needs a higher minor
-/// version, which tells a host which words a card has.
+/// version, from which a host derives the words of a card.
 fn assert_golden(name: &str, now: &str) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("golden")
