@@ -1,4 +1,4 @@
-//! EnDat: the blocks that send a frame and take its answer, and the service that gives encoders what they need.
+//! EnDat: the blocks that send a frame and receive its answer, and the service that maintains an encoder.
 //!
 //! ```text
 //! trigger -> Transaction -> ClockGen ------> endat_clk
