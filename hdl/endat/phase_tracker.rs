@@ -3,7 +3,7 @@
 //! ```text
 //! edge of this cell: places after the tracked one -->(+)--> 1/8, 1/32 or 1/512 of it --> phase (12 bits before the point, 12 after)
 //!                                                   - ^                                    |
-//!                                                     +------------ fraction -------------+--> delay for the cells
+//!                                                     +------------ fraction --------------+--> delay for the cells
 //! ```
 //!
 //! A place is one sampling time of the data line: a system clock cycle, or half of one. The start edge of the first frame sets the phase.
