@@ -236,7 +236,7 @@ pub struct Receiver {
     width: Signal<Local, Bits<6>>,
     /// Cells that follow the CRC of this answer or block.
     cells_after: Signal<Local, Bits<7>>,
-    /// Cells of the frame besides its payload.
+    /// Cells of the frame, excluding its payload.
     cells_around: Signal<Local, Bits<7>>,
 }
 

@@ -137,7 +137,7 @@ impl Logic for LineDelay {
 
     /// The pulse of a cell, and how far its data edge is from the middle.
     fn measure_edge(&mut self) {
-        // Of the edges before an acquired start bit, only the edge that launched it counts.
+        // Only the edge that launched an acquired start bit counts, not those before it.
         self.pulse_leaves.d.next = self.acquired.val()
             | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
         self.cells.pulse.next = self.pulse_leaves.q.val();

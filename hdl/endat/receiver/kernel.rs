@@ -333,7 +333,7 @@ impl Logic for Receiver {
 
     /// Start values for a frame, the next answer of a running clock, and a supplement.
     fn begin_frame(&mut self) {
-        // Cells of the frame besides payload and additional data.
+        // Cells of the frame, excluding payload and additional data.
         self.cells_around.next = self.fixed_cells.val();
         if self.shape.has_f2.val() {
             self.cells_around.next = self.fixed_cells.val() + 1;

@@ -185,7 +185,7 @@ fn clear_ram(a: &mut Assembler) {
     a.ld(0).addi(minus(1)).jnz(more).st(0);
     set(a, first, one);
     set(a, second, other);
-    // 0 at power-up. After a jump astray to this place the count of starts is lost.
+    // Clear the count of starts: TIME_MS is 0 at power-up. A jump astray to this place clears it, too.
     a.inp(input::TIME_MS).st(high(word::STATE));
     a.jmp(warm);
     a.place(half).ld(second).xori(other).jnz(cold);
@@ -328,7 +328,7 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     plug(a, times);
     a.jmp("main");
 
-    // Changed by the host just now, or by an upset: restart the program, so that the host sees that it must write its settings again.
+    // A guarded word has changed. WRITTEN set: the host wrote it. Otherwise an upset changed it: restart, and the count of starts makes the host write its settings again.
     a.place("changed");
     a.inp(input::STATUS).andi(status::WRITTEN).jz("start");
     a.jmp("main");
