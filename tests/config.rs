@@ -120,7 +120,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("sample_hz = 10_000", "sample_hz = 25_000", "takes up to 49.07 us, the largest part from recovery_max_ns = 30000, so at most 20379 Hz"),
         ("[\"pin\", \"timer\"]", "[\"pin\", \"button\"]", "trigger.sources = \"button\": unknown trigger; use pin, timer, register"),
         ("[\"pin\", \"timer\"]", "[\"pin\", \"pin\"]", "trigger.sources = \"pin\": stands twice"),
-        ("baud = 3_000_000", "baud = 9_000", "link.baud = 9000: outside 9600..3000000 (the most that the board passes on"),
+        ("baud = 3_000_000", "baud = 9_000", "link.baud = 9000: outside 9600..3000000 (the fastest rate that the board passes on"),
         ("baud = 3_000_000", "baud = 115_200", "the link is too slow: reading 62 bytes 1000 times a second takes 620000 bit/s"),
         ("baud = 3_000_000", "baud = 4_000_000", "link.baud = 4000000: outside 9600..3000000"),
         ("read_hz = 1_000", "read_hz = 0", "link.read_hz = 0: outside 1..1000000"),

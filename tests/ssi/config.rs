@@ -72,7 +72,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "clock_hz = 1_000_000 ",
             "clock_hz = 125_000 ",
-            "ssi.toml:14: channel[0].clock_hz = 125000: the LOW behind the last bit is looked at 12000 ns after the last falling edge, recovery_min_ns = 10000 ends it sooner; use at least 150151 Hz, or raise recovery_min_ns to 12000, if the encoder's is as long",
+            "ssi.toml:14: channel[0].clock_hz = 125000: DATA is checked for LOW 12000 ns after the last falling edge, but recovery_min_ns = 10000 ends the LOW sooner; use at least 150151 Hz, or raise recovery_min_ns to 12000, if the encoder's is as long",
         ),
         (
             "code = \"gray\" ",
