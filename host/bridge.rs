@@ -1,4 +1,4 @@
-//! Words of a card over a link of bytes, in the UARTBone format, beside the sample sets that the card pushes.
+//! Words of a card over a byte link in the UARTBone format, interleaved with the sample sets that the card pushes.
 //!
 //! Ref: LiteX, `litex/tools/remote/comm_uart.py`.
 
@@ -11,26 +11,26 @@ use std::time::Duration;
 
 /// Most words in one command.
 pub const WORDS_MAX: usize = 255;
-/// How long an answer is waited for, unless told otherwise.
+/// Default timeout for an answer.
 pub const WAIT: Duration = Duration::from_millis(500);
-/// A card forgets a command that pauses for 100 ms.
+/// A card drops a command that pauses for 100 ms.
 const FORGET: Duration = Duration::from_millis(120);
-/// The longest answer at 9600 baud takes a second; a line that is never quiet is given up after this.
+/// The longest answer at 9600 baud takes a second; after this time without silence on the line, waiting fails.
 const SETTLE_MAX: Duration = Duration::from_secs(3);
-/// How often a read is tried.
+/// Number of tries of a read.
 const TRIES: u32 = 3;
-/// How long the frame behind an answer is waited for.
+/// Timeout for the frame after an answer.
 const NEXT_FRAME: Duration = Duration::from_millis(5);
-/// Comes before an answer while the card pushes sample sets; no frame begins with it.
+/// Precedes an answer while the card pushes sample sets; no frame begins with it.
 const ANSWER: u8 = 0xFF;
 
-/// Access to words.
+/// Word access to a card.
 pub struct Bridge<T> {
     transport: T,
     wait: Duration,
     pushes: bool,
     inbox: VecDeque<u8>,
-    /// The next byte begins a frame, or an answer.
+    /// The next byte begins a frame or an answer.
     at_boundary: bool,
     decoder: Decoder,
     retries: u64,
@@ -50,7 +50,7 @@ impl<T: Transport> Bridge<T> {
         }
     }
 
-    /// Waits this long for an answer.
+    /// Sets the timeout for an answer.
     pub fn set_wait(&mut self, wait: Duration) {
         self.wait = wait;
     }
@@ -60,34 +60,34 @@ impl<T: Transport> Bridge<T> {
         &mut self.transport
     }
 
-    /// Answers that did not come and were asked for again, or had bytes too many.
+    /// Number of answers that were missing or too long and were requested again.
     pub fn retries(&self) -> u64 {
         self.retries
     }
 
-    /// What became of the pushed bytes.
+    /// Decoder of the pushed bytes, with its counters.
     pub fn decoder(&self) -> &Decoder {
         &self.decoder
     }
 
-    /// Tells whether the card pushes sample sets from now on: answers have a marker then.
+    /// Sets whether the card pushes sample sets; answers have a marker then.
     pub fn set_pushes(&mut self, pushes: bool) {
         self.pushes = pushes;
         self.at_boundary = true;
         self.decoder.forget();
     }
 
-    /// What came since then were answers without a marker, no damaged frames.
+    /// Discounts damaged frames since `damaged`: they were answers without a marker.
     pub(crate) fn forgive(&mut self, damaged: u64) {
         self.decoder.forgive(damaged);
     }
 
-    /// Whether the card is taken to push sample sets.
+    /// True if the card is assumed to push sample sets.
     pub(crate) fn pushes(&self) -> bool {
         self.pushes
     }
 
-    /// Ends the pushing in order: the answer behind the last frame is the last one with a marker.
+    /// Stops pushing: the answer after the last frame is the last one with a marker.
     pub fn end_push(&mut self) -> Result<(), HostError> {
         self.write(Place::at("card", "stream_control", 0).address(), &[0])?;
         let last = self.read(0, 1);
@@ -98,11 +98,11 @@ impl<T: Transport> Bridge<T> {
         Ok(())
     }
 
-    /// Brings the link into a known state, whoever used it before: nothing is half sent, and the card pushes nothing.
+    /// Brings the link into a known state after any earlier use: no half command, and no pushed sets.
     pub fn calm(&mut self) -> Result<(), HostError> {
         self.set_pushes(false);
         self.settle()?;
-        // A card without a stream does nothing about it.
+        // A card without a stream ignores this.
         self.write(Place::at("card", "stream_control", 0).address(), &[0])?;
         self.settle()?;
         // The first answer after a push has its marker.
@@ -110,7 +110,7 @@ impl<T: Transport> Bridge<T> {
         self.settle()
     }
 
-    /// Sample sets that have come, after waiting at most `wait` for bytes.
+    /// Received sample sets, after waiting at most `wait` for bytes.
     pub fn pushed(&mut self, wait: Duration) -> Result<Vec<SampleSet>, HostError> {
         if self.inbox.is_empty() {
             self.fill(wait)?;
@@ -121,7 +121,7 @@ impl<T: Transport> Bridge<T> {
         Ok(self.decoder.take())
     }
 
-    /// Sample sets that came while an answer was waited for.
+    /// Sample sets received while waiting for an answer.
     pub(crate) fn decoded(&mut self) -> Vec<SampleSet> {
         self.decoder.take()
     }
@@ -144,7 +144,7 @@ impl<T: Transport> Bridge<T> {
     fn read_as(&mut self, command: u8, address: u16, count: usize) -> Result<Vec<u32>, HostError> {
         debug_assert!((1..=WORDS_MAX).contains(&count));
         let [high, low] = address.to_be_bytes();
-        // Reading what a read changes must not be done twice: the caller decides.
+        // A read with side effects must not be repeated automatically: the caller decides.
         let tries = if command == 4 { 1 } else { TRIES };
         for attempt in 0..tries {
             if attempt > 0 {
@@ -152,7 +152,7 @@ impl<T: Transport> Bridge<T> {
                 self.settle()?;
             }
             if !self.pushes {
-                // Bytes that nobody asked for: an answer went wrong, and its rest may still be coming.
+                // Unexpected bytes: an answer failed, and the rest of it may still arrive.
                 let stale = self.inbox.len() + self.fill(Duration::ZERO)?;
                 self.inbox.clear();
                 if stale > 0 {
@@ -174,8 +174,8 @@ impl<T: Transport> Bridge<T> {
         })
     }
 
-    /// Reads the first `count` words of a card that should push and does not answer: has it begun anew, its answer has no marker. None if
-    /// nothing comes that `is_it`; what comes instead belongs to the stream, and none of it is lost.
+    /// Reads the first `count` words of a card that should push and does not answer. After a restart its answer has no marker. Returns `None` if
+    /// no words satisfy `is_it`; received bytes then belong to the stream, and none are lost.
     pub(crate) fn read_unmarked(
         &mut self,
         count: usize,
@@ -215,7 +215,7 @@ impl<T: Transport> Bridge<T> {
         self.transport.send(bytes).map_err(lost)
     }
 
-    /// Takes the bytes that come within `wait` to the inbox.
+    /// Receives bytes into the inbox for up to `wait`.
     fn fill(&mut self, wait: Duration) -> Result<usize, HostError> {
         let mut buffer = [0; 4096];
         let count = self.transport.receive(&mut buffer, wait).map_err(lost)?;
@@ -223,7 +223,7 @@ impl<T: Transport> Bridge<T> {
         Ok(count)
     }
 
-    /// Waits until the card has forgotten what was sent to it, and nothing comes any more, or nothing but whole frames where it pushes.
+    /// Waits until the card has dropped any half command, and the line is quiet, or carries only whole frames if the card pushes.
     fn settle(&mut self) -> Result<(), HostError> {
         let mut quiet_since = self.transport.elapsed();
         let end = quiet_since + SETTLE_MAX;
@@ -238,7 +238,7 @@ impl<T: Transport> Bridge<T> {
                     self.pushed_byte(byte);
                 }
             }
-            // The rest of an answer spoils the frame behind it.
+            // The rest of an answer corrupts the frame after it.
             is_noisy |= self.decoder.damaged() != damaged;
             damaged = self.decoder.damaged();
             if is_noisy {
@@ -248,7 +248,7 @@ impl<T: Transport> Bridge<T> {
         Ok(())
     }
 
-    /// An answer that lost a byte has eaten one of the frame behind it: then that frame is damaged.
+    /// An answer that lost a byte has consumed one of the next frame, which is then damaged.
     fn goes_on_well(&mut self) -> Result<bool, HostError> {
         if !self.pushes {
             return Ok(true);
@@ -293,7 +293,7 @@ impl<T: Transport> Bridge<T> {
     }
 }
 
-/// Words as they come.
+/// Words from received bytes.
 fn words(bytes: &[u8]) -> Vec<u32> {
     let word = |b: &[u8]| u32::from_be_bytes([b[0], b[1], b[2], b[3]]);
     bytes.chunks_exact(4).map(word).collect()
@@ -304,7 +304,7 @@ fn lost(error: std::io::Error) -> HostError {
         address: "link".into(),
         action: "lost",
         error,
-        remedy: "is the card still plugged in?",
+        remedy: "check that the card is still connected",
     }
 }
 
@@ -314,7 +314,7 @@ mod tests {
     use std::io;
     use std::thread::sleep;
 
-    /// A card whose time runs a tenth as fast as ours; each byte of its answer takes a millisecond of it.
+    /// A card whose time runs at a tenth of real time; each byte of its answer takes a millisecond of it.
     struct Slow {
         time: Duration,
         answer: VecDeque<u8>,

@@ -1,4 +1,4 @@
-//! A card: who it is, its words by name, its results.
+//! A card: identity, words by name, results.
 
 use crate::bridge::Bridge;
 use crate::name_plate::NamePlate;
@@ -11,14 +11,14 @@ use endat_driver::Reading;
 use endat_regs::{result_words, Part, Protocol, Protocols, FEATURES_BITS, ID, VERSION};
 use std::time::Duration;
 
-/// Words that say who a card is.
+/// Number of words of the identity.
 pub(crate) const IDENTITY_WORDS: usize = 6;
 /// The field of a channel's clock period.
 const PERIOD: &str = "period_cycles";
-/// How long a request may take, unless told otherwise: milliseconds on a real card, many seconds on a simulated one.
+/// Default timeout of a request: milliseconds on a real card, many seconds on a simulated one.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// What a card says about itself.
+/// Identity of a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// Major, minor and patch version of its register map.
@@ -31,20 +31,20 @@ pub struct Identity {
     pub features: u32,
     /// System clock: the unit of every number of cycles.
     pub system_hz: u32,
-    /// Which configuration it was made from.
+    /// Hash of the configuration from which it was generated.
     pub configuration_hash: u32,
-    /// What each channel speaks.
+    /// Protocol of each channel.
     pub protocols: Protocols,
-    /// Sets of the stream have the additional data.
+    /// Stream sets include the additional data.
     pub stream_additional_data: bool,
 }
 
 impl Identity {
-    /// What the first words of a card's map say.
+    /// Decodes the first words of a card's map.
     pub(crate) fn of(words: &[u32]) -> Result<Self, HostError> {
         if words[0] != ID {
             return Err(HostError::NoCard(format!(
-                "word 0 is 0x{:08X}, not 0x{ID:08X}: this is no EnDat card, or the baud rate is another (--baud)",
+                "word 0 is 0x{:08X}, not 0x{ID:08X}: this is not an EnDat card, or the baud rate differs (--baud)",
                 words[0]
             )));
         }
@@ -52,7 +52,7 @@ impl Identity {
         let version = [major, minor, words[1] as u8];
         if major != VERSION[0] {
             return Err(HostError::NoCard(format!(
-                "register map {major}.{minor}: this program knows {}.x; take the program that the card was emitted with",
+                "register map {major}.{minor}: this program supports {}.x; use the program that generated the card",
                 VERSION[0]
             )));
         }
@@ -77,24 +77,24 @@ impl Identity {
         })
     }
 
-    /// The parts that it has.
+    /// Parts of the card.
     pub fn parts(&self) -> impl Iterator<Item = Part> {
         let identity = *self;
         let all = Part::ALL.iter().copied();
         all.filter(move |part| identity.has(*part))
     }
 
-    /// Whether it has a part.
+    /// True if the card has a part.
     pub fn has(&self, part: Part) -> bool {
         self.features >> part as u32 & 1 == 1
     }
 
-    /// What a channel speaks.
+    /// Protocol of a channel.
     pub fn protocol(&self, channel: usize) -> Protocol {
         self.protocols.of(channel)
     }
 
-    /// What the channel of a place speaks; EnDat if it is one of the card.
+    /// Protocol of the channel of a place; EnDat for words of the card.
     pub fn protocol_of(&self, place: &Place) -> Protocol {
         match place.block.per_channel {
             true => self.protocol(place.channel),
@@ -103,7 +103,7 @@ impl Identity {
     }
 }
 
-/// Results of all channels at one moment.
+/// Results of all channels at one instant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Results {
     /// One for each channel.
@@ -119,7 +119,7 @@ pub struct Card<T> {
 }
 
 impl<T: Transport> Card<T> {
-    /// Finds out who answers.
+    /// Identifies the card at the link.
     pub fn find(mut bridge: Bridge<T>) -> Result<Self, HostError> {
         let mut words = bridge.read(0, IDENTITY_WORDS).unwrap_or_default();
         if words.first() != Some(&ID) {
@@ -127,7 +127,7 @@ impl<T: Transport> Card<T> {
             let again = bridge.read(0, IDENTITY_WORDS);
             words = again.map_err(|error| match bridge.transport().refusal() {
                 Some(why) => HostError::Refused(format!(
-                    "{why}; end the program that has it, or try again when it has ended"
+                    "{why}; end the program that uses it, or try again later"
                 )),
                 None => error,
             })?;
@@ -141,39 +141,39 @@ impl<T: Transport> Card<T> {
         })
     }
 
-    /// Who it is.
+    /// Identity of the card.
     pub fn identity(&self) -> &Identity {
         &self.identity
     }
 
-    /// The words' link.
+    /// Word access to the card.
     pub fn bridge(&mut self) -> &mut Bridge<T> {
         &mut self.bridge
     }
 
-    /// How long a request may take.
+    /// Timeout of a request.
     pub fn patience(&self) -> Duration {
         self.patience
     }
 
-    /// Lets requests take this long.
+    /// Sets the timeout of requests.
     pub fn set_patience(&mut self, patience: Duration) {
         self.patience = patience;
     }
 
-    /// Ranges given by the user; they win over those of the card.
+    /// Ranges given by the user; they override those of the card.
     pub fn ranges(&self) -> &Ranges {
         &self.ranges
     }
 
-    /// Says what positions are, of some channels.
+    /// Sets the position ranges of some channels.
     pub fn set_ranges(&mut self, ranges: Ranges) -> Result<(), HostError> {
         ranges.check(self.identity.channels)?;
         self.ranges = ranges;
         Ok(())
     }
 
-    /// The place of that name on this card.
+    /// The place with this name on this card.
     pub fn place(&self, name: &str) -> Result<Place, HostError> {
         let lacks = |part: &Part| !self.identity.has(*part);
         let channels = 0..self.identity.channels;
@@ -214,12 +214,12 @@ impl<T: Transport> Card<T> {
         Ok(place)
     }
 
-    /// Reads a word, or the field that is meant.
+    /// Reads a word, or the field of the place.
     pub fn read(&mut self, place: &Place) -> Result<u32, HostError> {
         Ok(place.of(self.bridge.read(place.address(), 1)?[0]))
     }
 
-    /// Refuses a value that the map forbids for this word or field; [`Card::write`] writes any that fits, and refuses words that are read only.
+    /// Rejects a value that the map forbids for this word or field. [`Card::write`] accepts any that fits, and rejects read-only words.
     pub fn permits(&self, place: &Place, value: u32) -> Result<(), HostError> {
         if place.register.access == Access::ReadOnly {
             return Ok(());
@@ -230,7 +230,7 @@ impl<T: Transport> Card<T> {
             .clone()
             .filter(|f| place.field.is_none_or(|one| one == *f));
         let known = fields.fold(0, |all, f| all | f.mask());
-        // The card drops a bit that the word does not have, and it would be told as written.
+        // The card drops bits that the word does not have, and the write would look successful.
         if place.field.is_none() && value & !known != 0 {
             return Err(HostError::Name(format!(
                 "value = {value}: {place} has no such bits; give bits of 0x{known:X}"
@@ -242,7 +242,7 @@ impl<T: Transport> Card<T> {
                 None => field.of(value),
             };
             let takes = match field.refusal(number, protocol) {
-                // The map's limit is that of cards with DATA on both edges.
+                // The map's limit applies to cards that sample DATA on both edges.
                 None if field.name == PERIOD
                     && protocol == Protocol::Endat
                     && number < self.period_min() =>
@@ -269,7 +269,7 @@ impl<T: Transport> Card<T> {
         }
     }
 
-    /// Writes a word, or changes the field that is meant and leaves the others.
+    /// Writes a word, or changes the field of the place and keeps the others.
     pub fn write(&mut self, place: &Place, value: u32) -> Result<(), HostError> {
         if place.register.access == Access::ReadOnly {
             return Err(HostError::Name(format!(
@@ -295,8 +295,8 @@ impl<T: Transport> Card<T> {
         self.bridge.write(place.address(), &[word])
     }
 
-    /// Results of all channels, of one moment. Each position is checked against its CRC once more; what does not fit is read again, and
-    /// if it still does not, it is no position: cause `upset`.
+    /// Results of all channels, from one instant. Each position is checked against its CRC again. A mismatch is read again; if it
+    /// persists, the channel has no position and the cause `upset`.
     pub fn results(&mut self) -> Result<Results, HostError> {
         let mut results = self.read_results()?;
         if !results.channels.iter().all(|channel| channel.fits) {
@@ -335,7 +335,7 @@ impl<T: Transport> Card<T> {
             });
         }
         let at = |register| Place::at("service", register, channel);
-        // The state first: what it says is there is there when the words are read.
+        // Read the state first, so that the words it marks valid are valid when they are read.
         let state = self.bridge.read(at("progress").address(), 2)?;
         let (first, last) = (at("alarms").address(), at("delay").address());
         let words = self.bridge.read(first, usize::from(last - first) + 1)?;

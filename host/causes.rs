@@ -1,10 +1,10 @@
-//! Causes: what can be wrong with a result, and what helps.
+//! Causes of a result, with remedies.
 
 use endat_regs::causes;
 
 pub use causes::{advice, number as of_code, ALL, CODES};
 
-/// Name of a cause, as counters and files have it.
+/// Name of a cause in counters and files.
 pub fn name(cause: u8) -> &'static str {
     causes::of(cause).map_or("unknown", |c| c.name)
 }

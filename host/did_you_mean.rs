@@ -1,9 +1,9 @@
-//! The name that was meant by a misspelt one. One measure and one bound for everything that a user types.
+//! Suggests a name for a misspelt one. All user input shares one measure and one bound.
 
-/// Nothing longer is a name.
+/// Longest name.
 const NAME_MAX: usize = 64;
 
-/// The names that are closest to a misspelt one, as `text` spells them; none if none is close.
+/// The names closest to a misspelt one, according to `text`; empty if none is close.
 pub fn closest<T>(
     typed: &str,
     names: impl IntoIterator<Item = T>,
@@ -18,11 +18,11 @@ pub fn closest<T>(
         let rest = text(name).strip_prefix(typed);
         rest.is_some_and(|rest| !typed.is_empty() && rest.starts_with('_'))
     };
-    // The rest of a name is left out, its unit mostly.
+    // The end of a name is missing, mostly its unit.
     if names.iter().filter(|name| is_begun(name)).count() == 1 {
         return names.into_iter().filter(is_begun).collect();
     }
-    // One slip, and one more for each four letters; two letters that have changed places are one.
+    // One typing error, and one more for each four letters; two swapped letters count as one.
     let mut least = 1 + typed.len() / 4;
     for name in names {
         let distance = strsim::osa_distance(typed, text(&name));
@@ -37,7 +37,7 @@ pub fn closest<T>(
     found
 }
 
-/// `did you mean NAME?`, of the name that is closest; none if none is.
+/// `did you mean NAME?` with the closest name; `None` if none is close.
 pub fn guess<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let near = closest(typed, names, |name| name);
     near.first().map(|near| format!("did you mean {near}?"))

@@ -1,53 +1,53 @@
-//! What can go wrong between a host and a card.
+//! Errors between a host and a card.
 
 use std::io;
 
-/// Why something could not be had from a card.
+/// Error of an access to a card.
 #[derive(Debug, thiserror::Error)]
 pub enum HostError {
-    /// The port cannot be opened, or is gone.
+    /// The port cannot be opened, or was disconnected.
     #[error("{address}: {action}: {error}; {remedy}")]
     Link {
         /// Port as the user named it.
         address: String,
-        /// What was tried.
+        /// Attempted action.
         action: &'static str,
-        /// What the system says.
+        /// Error of the operating system.
         error: io::Error,
-        /// What helps.
+        /// Remedy.
         remedy: &'static str,
     },
     /// No answer, several times.
     #[error("no answer from the card in {tries} tries of {wait_ms} ms; is another program connected to it, is it powered, is the baud rate the card's (--baud)?")]
     Silent {
-        /// How often it was asked.
+        /// Number of tries.
         tries: u32,
-        /// How long each answer was waited for.
+        /// Timeout of each answer.
         wait_ms: u64,
     },
-    /// Nothing is recorded, though it should be.
+    /// No sample arrives during a recording.
     #[error("no sample for {seconds} s; is a trigger enabled (card_config.trigger_sources), is the card plugged in?")]
     NoSample {
-        /// How long it was waited for.
+        /// Waiting time.
         seconds: u64,
     },
-    /// What answers is no card, or one of another time.
+    /// The answer does not come from a card, or from one with another map.
     #[error("{0}")]
     NoCard(String),
-    /// A name or number that the user gave.
+    /// A wrong name or number from the user.
     #[error("{0}")]
     Name(String),
     /// The card has no such part.
     #[error("{what}: the card has no part `{part}`; emit it with {remedy}")]
     Part {
-        /// What was wanted.
+        /// Requested function.
         what: &'static str,
-        /// What is missing.
+        /// Missing part.
         part: &'static str,
-        /// Configuration that has it.
+        /// Configuration that selects it.
         remedy: &'static str,
     },
-    /// The encoder, or the line to it, refused.
+    /// The encoder, or the line to it, rejected the request.
     #[error("{0}")]
     Refused(String),
 }

@@ -16,34 +16,34 @@ use endat_regs::{Part, Protocol};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// Instead of a cause: the channel took no part in the trigger.
+/// Instead of a cause: the channel did not take the trigger.
 pub const NOT_TAKEN: &str = "not_taken";
-/// Its result has not come in time.
+/// Instead of a cause: the result was not ready in time.
 pub const TOO_LATE: &str = "too_late";
-/// This is what came for the last [`TOO_LATE`], with a position.
+/// The position for the last [`TOO_LATE`].
 pub const LATE: &str = "late";
 
-/// What stands in a row where a cause would, and what it means.
+/// Texts in a row instead of a cause, with their meaning.
 pub const NO_CAUSES: [(&str, &str); 3] = [
     (
         NOT_TAKEN,
-        "the channel took no part in this trigger: it was busy, it is not for it, or it is quiet for 30 ms behind an aborted frame \
-         or a reset. The row in which that began has the cause; service<n>.frames_... have counted it",
+        "the channel took no part in this trigger: it was busy, ignores the trigger, or pauses for 30 ms after an aborted frame \
+         or a reset. The row where that began has the cause; service<n>.frames_... counts it",
     ),
     (
         TOO_LATE,
-        "the result had not come when the next trigger did: the frame took longer than the triggers are apart, as one that measures \
-         the line delay does",
+        "the result was not ready at the next trigger: the frame took longer than the trigger period, for example because it measured \
+         the line delay",
     ),
-    (LATE, "the position that came for the last too_late, a trigger or more after its own"),
+    (LATE, "the position for the last too_late, at least one trigger after its own"),
 ];
 
-/// Code of a name that is unknown.
+/// Code of an unknown name.
 pub const UNKNOWN_CODE: u8 = u8::MAX;
-/// Code of the first of [`NO_CAUSES`], behind the numbers of all causes.
+/// Code of the first of [`NO_CAUSES`], after the numbers of all causes.
 const NO_CAUSE_CODES: u8 = 128;
 
-/// A code for everything that stands where a cause would: the cause's number, or one of its own.
+/// Codes and names of all causes and of [`NO_CAUSES`].
 pub fn cause_codes() -> impl Iterator<Item = (u8, &'static str)> {
     let known = causes::ALL.iter().map(|c| (c.number as u8, c.name));
     let others = NO_CAUSES.iter().enumerate();
@@ -54,28 +54,28 @@ pub fn cause_codes() -> impl Iterator<Item = (u8, &'static str)> {
 /// A channel of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
-    /// Last good position, if there is one.
+    /// Last good position, if valid.
     pub position: Option<u64>,
     /// This trigger brought it.
     pub fresh: bool,
     /// Name of the cause, or [`NOT_TAKEN`], [`TOO_LATE`], [`LATE`].
     pub cause: &'static str,
-    /// Additional data 1 and 2 of the same frame, those that came with a right CRC.
+    /// Additional data 1 and 2 of the same frame, if received with a right CRC.
     pub infos: [Option<Info>; 2],
 }
 
 impl Cell {
-    /// The code of its cause, see [`cause_codes`].
+    /// Code of the cause, see [`cause_codes`].
     pub fn cause_code(&self) -> u8 {
         let found = cause_codes().find(|(_, name)| *name == self.cause);
         found.map_or(UNKNOWN_CODE, |(code, _)| code)
     }
 
-    /// What a set of the stream says of a channel that speaks this protocol.
+    /// Cell from a channel's part of a stream set, in a channel with this protocol.
     fn of(sample: &Sample, protocol: Protocol) -> Self {
         let named = sample.cause_name(protocol);
         let cause = match (sample.taken, sample.missing) {
-            // What went wrong is told, however late.
+            // A fault is reported, even if late.
             _ if sample.is_late() && !sample.fresh && sample.cause != 0 => named,
             _ if sample.is_late() => LATE,
             (false, _) => NOT_TAKEN,
@@ -91,10 +91,10 @@ impl Cell {
     }
 }
 
-/// What a trigger brought; or one position of a running clock.
+/// Result of a trigger, or a position of a running clock.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The channel whose running clock brought the position; its `trigger` is the last one before it.
+    /// The channel whose running clock brought the position; `trigger` is the last one before it.
     pub run: Option<usize>,
     /// Number of the trigger, not wrapping.
     pub trigger: u64,
@@ -109,31 +109,31 @@ pub struct Row {
 /// Bits of `card.stream_control`: collect and push.
 const COLLECT_AND_PUSH: u32 = 0b11;
 
-/// Where rows come from.
+/// Source of rows.
 pub struct Feed {
     streams: bool,
     clock: Clock,
     lost_in_card: u64,
     heard: Instant,
-    /// What the card was when it was last asked; none behind an error.
+    /// The state of the card when last asked; `None` after an error.
     witness: Option<Witness>,
-    /// Its count of triggers then, until it has been compared with the rows.
+    /// Its trigger count at that time, until compared with the rows.
     count: Option<u32>,
-    /// It was asked, and has not answered yet.
+    /// A question to the card is still unanswered.
     in_doubt: bool,
-    /// How often the link had been lost by then.
+    /// How often the link had been lost at that time.
     reopened: u64,
-    /// Sequence numbers of the last row, where results are read.
+    /// Sequence numbers of the last row, if results are read.
     sequences: Vec<u16>,
 }
 
-/// Nothing for so long: perhaps the card has begun anew, and does not stream any more. A card that is read one by one is asked as often.
+/// Longest silence. After it the card may have restarted, and have stopped its stream. A polled card is asked with this period.
 const SILENCE: Duration = Duration::from_secs(1);
-/// More results than this between two looks: perhaps the card has begun anew, and counts from the beginning.
+/// Most results between two reads. After more the card may have restarted and count from zero.
 const LEAP: u16 = 256;
 
 impl Feed {
-    /// Begins: from the stream if the card has one and `polls` does not forbid it.
+    /// Begins: from the stream if the card has one, unless `polls`.
     pub fn begin<T: Transport>(card: &mut Card<T>, polls: bool) -> Result<Self, HostError> {
         let streams = card.identity().has(Part::Stream) && !polls;
         let witness = Witness::new(card)?;
@@ -159,8 +159,8 @@ impl Feed {
         })
     }
 
-    /// Asks who is there if there is a doubt, or nobody was asked for long; false if nobody answers. What comes behind an error is not
-    /// of the card that it was: this is the end.
+    /// Asks the card for its state after a doubt, or after a long time; false if there is no answer. An error ends the feed, because later data
+    /// belong to another card.
     fn is_the_same<T: Transport>(
         &mut self,
         card: &mut Card<T>,
@@ -185,19 +185,19 @@ impl Feed {
         Ok(has_answered)
     }
 
-    /// Whether every trigger has a row, unless it is counted as missing for a fault.
+    /// True if every trigger has a row, except those counted as missing.
     pub fn streams(&self) -> bool {
         self.streams
     }
 
-    /// Sample sets that the card itself has dropped.
+    /// Sample sets that the card has dropped.
     pub fn lost_in_card(&self) -> u64 {
         self.lost_in_card
     }
 
-    /// Ends: the link is as it was before.
+    /// Ends: restores the earlier state of the link.
     pub fn end<T: Transport>(self, card: &mut Card<T>) -> Result<(), HostError> {
-        // A card that is another one now is left as it is.
+        // If the card is now another one, leave its settings unchanged.
         match self.streams && self.witness.is_some() {
             true => card.bridge().end_push(),
             false => Ok(()),
@@ -215,7 +215,7 @@ impl Feed {
         }
     }
 
-    /// The row of a running clock's position; the other channels have nothing to do with it.
+    /// The row of a running clock's position; the other channels are not part of it.
     fn of_run(&mut self, set: &SampleSet, channel: usize, channels: usize) -> Option<Row> {
         let sample = set.channels.first()?;
         let cells = (0..channels).map(|n| match n == channel {
@@ -241,8 +241,8 @@ impl Feed {
         })
     }
 
-    /// The row of these results; none if no channel has brought anything since the last one. Channels may take triggers of their own: the
-    /// one with the most results counts them, the latest moment is that of the row.
+    /// The row of these results; `None` if no channel has a new result since the last one. With separate channel triggers the
+    /// channel with the most results counts them, and the latest time is that of the row.
     fn polled(&mut self, results: &[Reading]) -> Option<Row> {
         let steps: Vec<u16> = match self.sequences.is_empty() {
             true => results.iter().map(|r| r.sequence).collect(),
@@ -277,14 +277,14 @@ impl Feed {
         Some(self.row(sequence.wrapping_add(most), moment, cells))
     }
 
-    /// How many results there were since the last row, of the channel with the most; 0 before the first row.
+    /// Results since the last row, in the channel with the most; 0 before the first row.
     fn leap(&self, results: &[Reading]) -> u16 {
         let both = results.iter().zip(&self.sequences);
         let steps = both.map(|(r, last)| r.sequence.wrapping_sub(*last));
         steps.max().unwrap_or_default()
     }
 
-    /// Takes what has come, after waiting at most `wait`.
+    /// Reads received rows, after waiting at most `wait`.
     pub fn fill<T: Transport>(
         &mut self,
         card: &mut Card<T>,
@@ -293,13 +293,13 @@ impl Feed {
     ) -> Result<(), HostError> {
         if self.streams {
             let mut sets = card.bridge().pushed(wait)?;
-            // Whoever was silent may have counted on meanwhile, further than a number of 16 bits tells.
+            // After a silence the count may have advanced by more than a 16-bit number shows.
             let was_silent = !sets.is_empty() && (self.in_doubt || self.heard.elapsed() > SILENCE);
             if !sets.is_empty() {
                 self.heard = Instant::now();
             }
             self.is_the_same(card, was_silent)?;
-            // Those that came before the answer.
+            // Sets received before the answer.
             sets.extend(card.bridge().decoded());
             if let Some(count) = self.count.take() {
                 let triggers = sets.iter().filter(|set| set.run.is_none());
@@ -322,7 +322,7 @@ impl Feed {
         }
         if !self.is_the_same(card, false)? {
             std::thread::sleep(wait);
-            // Opens it again when it is back.
+            // Reopens the link when it is back.
             card.bridge().pushed(Duration::ZERO)?;
             return Ok(());
         }

@@ -3,14 +3,14 @@
 //! ```text
 //! serial port, TCP, a card in the same process
 //!        v  Transport
-//!     Bridge    words, in the UARTBone byte format; tells answers from pushed sample sets
+//!     Bridge    words, in the UARTBone byte format; separates answers from pushed sample sets
 //!        v
-//!      Card     registers by name, results of one moment, name plate, requests
+//!      Card     registers by name, results of one instant, name plate, requests
 //!        v
 //!     Scale     degrees, turns, millimetres
 //! ```
 //!
-//! Nothing here knows how the card is made; names and places of its registers, causes and parts come from [`endat_regs`], as the card has them.
+//! This crate does not depend on the design of the card; [`endat_regs`] supplies names and places of its registers, causes and parts.
 
 pub mod bridge;
 pub mod card;

@@ -6,7 +6,7 @@ use crate::transport::Transport;
 use crate::HostError;
 use std::time::{Duration, Instant};
 
-/// EnDat 2.1 mode commands that `param` needs.
+/// EnDat 2.1 mode commands of `param`.
 pub mod command {
     /// 001110 selection of memory area.
     pub const SELECT_MEMORY: u8 = 0b001110;
@@ -34,7 +34,7 @@ pub struct Request {
     pub data: u16,
 }
 
-/// What came back.
+/// Answer to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
     /// Echo of MRS code or address, or the status byte of additional data 1.
@@ -43,7 +43,7 @@ pub struct Answer {
     pub data: u16,
     /// The whole answer: address and data, or the 48 bits of a longer one.
     pub bits: u64,
-    /// How long the request took.
+    /// Duration of the request.
     pub duration: Duration,
 }
 
@@ -55,7 +55,7 @@ impl<T: Transport> Card<T> {
         let at = |register| Place::at("service", register, channel);
         self.wait_for_initialisation(channel)?;
         let finished = |state: u32| state >> 16;
-        // One that another program sent, or that was given up, is not ours.
+        // Wait for the end of an earlier request of another program.
         let busy = Place::field_at("service", "request_state", "busy", channel);
         let end = Instant::now() + self.patience();
         while self.read(&busy)? == 1 {
@@ -117,7 +117,7 @@ impl<T: Transport> Card<T> {
         })
     }
 
-    /// Gives up the request that waits for a trigger in channel `channel`, whoever sent it; whether there was one.
+    /// Cancels the request that waits for a trigger in channel `channel`; true if there was one.
     pub fn cancel_request(&mut self, channel: usize) -> Result<bool, HostError> {
         self.needs_endat("mode commands", channel)?;
         self.needs_requests("requests to the encoder")?;
@@ -125,13 +125,13 @@ impl<T: Transport> Card<T> {
         if self.read(&busy)? == 0 {
             return Ok(false);
         }
-        // The whole word: what was asked for before must not be done again.
+        // Write the whole word, so that earlier strobes are not repeated.
         self.write(&Place::at("service", "control", channel), CANCEL)?;
         let end = Instant::now() + self.patience();
         while self.read(&busy)? == 1 {
             if Instant::now() > end {
                 return Err(HostError::Refused(format!(
-                    "channel {channel}: the request is still under way {} s after it was cancelled; is the card alive?",
+                    "channel {channel}: the request is still under way {} s after it was cancelled; check that the card still answers",
                     self.patience().as_secs()
                 )));
             }
@@ -139,7 +139,7 @@ impl<T: Transport> Card<T> {
         Ok(true)
     }
 
-    /// Waits until the card no longer initialises the encoder: meanwhile it takes no request and no trigger.
+    /// Waits until the card has initialised the encoder; until then it accepts no request and no trigger.
     pub fn wait_for_initialisation(&mut self, channel: usize) -> Result<(), HostError> {
         let running = Place::field_at("service", "state", "initialising", channel);
         let end = Instant::now() + INITIALISATION;

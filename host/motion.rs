@@ -1,11 +1,11 @@
-//! Positions counted on over the place where they begin anew, and their velocity: exact, in measuring steps.
+//! Unwrapped positions and their velocity: exact, in measuring steps.
 
 use std::collections::VecDeque;
 
-/// A velocity is that over this time at least: the steps of the encoder are small against it.
+/// A velocity is computed over at least this time, so that the encoder's steps are small against it.
 pub const VELOCITY_OVER_S: f64 = 1e-3;
 
-/// Counts on where positions begin anew: the next one is where it is nearer to the last one.
+/// Unwraps positions: each position continues from the nearest turn of the last one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Unwrap {
     range: Option<u64>,
@@ -13,7 +13,7 @@ pub struct Unwrap {
 }
 
 impl Unwrap {
-    /// Of positions that begin anew after so many.
+    /// For positions that wrap after `range` steps.
     pub fn new(range: Option<u64>) -> Self {
         Self {
             range: range.filter(|r| *r > 0),
@@ -21,7 +21,7 @@ impl Unwrap {
         }
     }
 
-    /// Takes a position; gives it counted on.
+    /// Processes a position; returns it unwrapped.
     pub fn step(&mut self, position: u64) -> i128 {
         let total = match self.last {
             None => position.into(),
@@ -35,11 +35,11 @@ impl Unwrap {
     }
 }
 
-/// The change that is the same up to whole ranges, and the smallest; half a range is forwards.
+/// The equivalent change, modulo `range`, with the smallest size; half a range counts as forwards.
 pub fn nearest(change: i128, range: u64) -> i128 {
     let range = i128::from(range.max(1));
     let forwards = match change {
-        // A division of 128 bits costs more than all else of a row.
+        // A 128-bit division costs more than the rest of a row.
         change if (0..range).contains(&change) => change,
         change if (-range..0).contains(&change) => change + range,
         change => change.rem_euclid(range),
@@ -50,9 +50,9 @@ pub fn nearest(change: i128, range: u64) -> i128 {
     }
 }
 
-/// What a position can be counted in.
+/// Unit in which positions are counted.
 pub trait Place: Copy {
-    /// How far it is from another one.
+    /// Distance from another position.
     fn since(self, other: Self) -> f64;
 }
 
@@ -68,7 +68,7 @@ impl Place for f64 {
     }
 }
 
-/// How fast a position changes, over a while.
+/// Velocity, averaged over a time.
 #[derive(Clone, Debug)]
 pub struct Velocity<T> {
     over_s: f64,
@@ -82,7 +82,7 @@ impl<T: Place> Default for Velocity<T> {
 }
 
 impl<T: Place> Velocity<T> {
-    /// Over this time at least.
+    /// Averages over at least this time.
     pub fn over(over_s: f64) -> Self {
         Self {
             over_s,
@@ -90,7 +90,7 @@ impl<T: Place> Velocity<T> {
         }
     }
 
-    /// Takes a position that is counted on; gives its change per second, none for the first one.
+    /// Processes an unwrapped position; returns its change per second, `None` for the first one.
     pub fn step(&mut self, time_s: f64, place: T) -> Option<f64> {
         while self.recent.len() > 1 && time_s - self.recent[1].0 >= self.over_s {
             self.recent.pop_front();
@@ -120,7 +120,7 @@ mod tests {
         }
         let mut back = Unwrap::new(Some(1_000));
         assert_eq!([10, 990, 10, 510].map(|p| back.step(p)), [10, -10, 10, 510]);
-        // A scale does not begin anew.
+        // A scale does not wrap.
         let mut scale = Unwrap::new(None);
         assert_eq!([10, 990, 10].map(|p| scale.step(p)), [10, 990, 10]);
     }
@@ -144,19 +144,19 @@ mod tests {
         assert_eq!(velocity.step(0.0, 0i128), None);
         assert_eq!(velocity.step(0.5, 10), Some(20.0));
         assert_eq!(velocity.step(1.0, 0), Some(0.0));
-        // The oldest that is long enough ago.
+        // The oldest position that is old enough.
         assert_eq!(velocity.step(2.0, 100), Some(100.0));
         assert_eq!(velocity.step(2.0, 100), Some(100.0));
     }
 
-    /// Forwards over a turn and over all 4096, and the same way back: no step is more than the 1000 that it is.
+    /// Forwards over a turn and over all 4096, and back: no step exceeds the real 1000.
     #[test]
     fn turns_and_the_end_of_their_count_are_passed_in_both_directions() {
         const STEP: i128 = 1_000;
         for (single, multi, turns_at) in [(25, 12, None), (12, 13, None), (17, 16, Some(24))] {
             let scale = Scale::of_bits(single, multi, turns_at);
             let range = i128::from(scale.range().unwrap());
-            // As such an encoder sends it.
+            // As the encoder sends it.
             let sent = |steps: i128| {
                 let steps = steps.rem_euclid(range) as u64;
                 let (turn, within) = (steps >> single, steps & ((1 << single) - 1));

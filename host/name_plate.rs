@@ -1,37 +1,37 @@
-//! What the encoder says about itself, as the card read it at initialisation.
+//! Name plate of the encoder, as read by the card at initialisation.
 
 use crate::registers::Place;
 use crate::units::Scale;
 use endat_regs::Protocol;
 
-/// What an encoder tells of itself that has no name plate.
+/// Description of an encoder without a name plate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Told {
-    /// Lines of a heading and what belongs to it.
+    /// Lines with heading and text.
     pub lines: Vec<(&'static str, String)>,
-    /// The same as numbers.
+    /// Values as numbers.
     pub fields: Vec<(&'static str, u32)>,
 }
 
-/// What a step of the initialisation does.
+/// Description of an initialisation step.
 pub fn step_name(step: u16) -> String {
     let field = Place::field_at("service", "progress", "step", 0).field;
     let told = field.and_then(|f| f.told(step.into(), Protocol::Endat));
     told.unwrap_or_else(|| "unknown".to_owned())
 }
 
-/// Name plate of an encoder. What the card has not read is `None`.
+/// Name plate of an encoder. Words that the card has not read are `None`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct NamePlate {
-    /// What the drivers have of it, too.
+    /// The part that the drivers have, too.
     pub driver: endat_driver::NamePlate,
-    /// The card has initialised the encoder with success.
+    /// The card has initialised the encoder successfully.
     pub initialised: bool,
     /// Step of the initialisation that is under way.
     pub step: Option<u16>,
     /// Step that failed.
     pub failed: Option<u16>,
-    /// The encoder knows EnDat 2.2.
+    /// The encoder supports EnDat 2.2.
     pub endat22: bool,
     /// Width of the position.
     pub position_bits: Option<u32>,
@@ -49,7 +49,7 @@ pub struct NamePlate {
     pub serial: Option<String>,
     /// Functional safety.
     pub safety: Option<bool>,
-    /// Longest calculation time tcal, as the encoder's word 39 has it.
+    /// Longest calculation time tcal, in the format of the encoder's word 39.
     pub tcal: Option<u16>,
     /// Supported additional data 1, bit n = code 0x40 + n.
     pub infos_1: Option<u16>,
@@ -68,7 +68,7 @@ pub struct NamePlate {
 }
 
 impl NamePlate {
-    /// Puts the words together; `word` gives one by its name, if the card has read it.
+    /// Combines the words; `word` returns a word by name, if the card has read it.
     pub(crate) fn new(word: impl Fn(&str) -> Option<u16>) -> Self {
         let driver = endat_driver::NamePlate::of(&word);
         Self {
@@ -92,7 +92,7 @@ impl NamePlate {
         }
     }
 
-    /// What a measuring step is, if the encoder said so.
+    /// The measuring step, if the encoder gives it.
     pub fn scale(&self) -> Option<Scale> {
         let steps = self.steps.filter(|s| *s > 0)?;
         Some(match self.rotary? {
@@ -112,7 +112,7 @@ impl NamePlate {
 mod tests {
     use super::*;
 
-    /// The word has other functions beside the recovery time.
+    /// The word has other functions in addition to the recovery time.
     #[test]
     fn the_recovery_time_is_the_lowest_two_bits_of_its_word() {
         let short = |found: u16| NamePlate::new(|_| Some(found)).short_recovery;

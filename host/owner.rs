@@ -1,4 +1,4 @@
-//! A thread that owns a card: it does one job after the other, and takes what a real card pushes even while its user does something else.
+//! A thread that owns a card: it executes jobs in order, and receives pushed data even while its user is busy.
 
 use crate::card::Card;
 use crate::feed::{Feed, Row};
@@ -9,56 +9,56 @@ use std::sync::mpsc::{channel, Receiver, RecvTimeoutError, Sender, TryRecvError}
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// A card, whatever it is behind.
+/// A card with any link.
 pub type AnyCard = Card<Box<dyn Transport>>;
-/// A job, done in the worker's thread.
+/// A job for the worker's thread.
 type Job = Box<dyn FnOnce(&mut Owner) + Send>;
 
-/// Rows that wait to be fetched at most, a minute and a half at 10 kHz; what comes then is lost in the card, and counted there.
+/// Most rows in the queue, a minute and a half at 10 kHz; the card drops and counts later ones.
 const ROWS_MAX: usize = 1_000_000;
-/// How long the link is listened to between two looks for jobs.
+/// Listening time between two checks for jobs.
 const SLICE: Duration = Duration::from_millis(20);
-/// No row for so long: something is wrong.
+/// Timeout for a row.
 const SILENCE: Duration = Duration::from_secs(20);
-/// How often a caller who waits may look around.
+/// Interval at which a waiting caller is called back.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// What the thread has.
+/// State of the thread.
 pub struct Owner {
     /// The card.
     pub card: AnyCard,
-    /// What a measuring step is, of every channel.
+    /// Measuring step of each channel.
     pub scales: Vec<Scale>,
     /// The recording that is under way.
     pub recording: Option<Recording>,
-    /// The card has its own time: its rows come whether anybody asks for them or not.
+    /// The card has its own time: its rows arrive whether they are requested or not.
     is_real: bool,
-    /// The user has gone.
+    /// The user has ended.
     is_over: bool,
 }
 
 /// A recording.
 pub struct Recording {
-    /// Where the rows come from.
+    /// Source of the rows.
     pub feed: Feed,
-    /// Rows that have come and are not fetched.
+    /// Received rows that have not been fetched.
     pub rows: VecDeque<Row>,
     heard: Instant,
-    /// What ended it; told when all rows before it have been fetched.
+    /// Error that ended the recording; returned after all rows before it have been fetched.
     broken: Option<HostError>,
 }
 
-/// What was lost between the card and its user.
+/// Losses between the card and its user.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Losses {
     /// Frames damaged on the link.
     pub damaged: u64,
-    /// Sets that the card itself has dropped.
+    /// Sets that the card has dropped.
     pub dropped: u64,
 }
 
 impl Owner {
-    /// Begins a recording, of a card that something triggers.
+    /// Begins a recording; the card must have a trigger.
     pub fn begin(&mut self, polls: bool) -> Result<(), HostError> {
         if self.recording.is_some() {
             return Err(HostError::Refused(
@@ -77,7 +77,7 @@ impl Owner {
         Ok(())
     }
 
-    /// What was lost on the way of the recording that is under way.
+    /// Losses of the recording under way.
     pub fn losses(&mut self) -> Losses {
         let recording = self.recording.as_ref();
         Losses {
@@ -86,7 +86,7 @@ impl Owner {
         }
     }
 
-    /// Ends it: the link is as it was before.
+    /// Ends the recording: restores the earlier state of the link.
     pub fn end(&mut self) -> Result<(), HostError> {
         match self.recording.take() {
             Some(recording) => Ok(recording.feed.end(&mut self.card)?),
@@ -94,7 +94,7 @@ impl Owner {
         }
     }
 
-    /// Listens a while. A card that does not answer may do so again.
+    /// Listens for a while. A card that does not answer may answer again later.
     fn listen(&mut self) {
         let Some(now) = &mut self.recording else {
             return;
@@ -115,7 +115,7 @@ impl Owner {
         self.is_real && self.recording.as_ref().is_some_and(is_wanted)
     }
 
-    /// Takes up to `count` rows, after listening once if there are fewer; an error when there will be no more.
+    /// Returns up to `count` rows, after listening once if fewer are queued; an error if no more will come.
     pub fn take(&mut self, count: usize) -> Result<Vec<Row>, HostError> {
         let wants = |r: &Recording| r.rows.len() < count && r.broken.is_none();
         if self.recording.as_ref().is_some_and(wants) {
@@ -150,22 +150,22 @@ impl Owner {
                 Err(TryRecvError::Disconnected) => break,
             }
         }
-        // Nobody is left to be told.
+        // The user has ended: ignore the error.
         let _ = self.end();
     }
 }
 
-/// What does jobs in the thread.
+/// Sends jobs to the thread.
 #[derive(Clone)]
 pub struct Jobs(Sender<Job>);
 
-/// The user's end of the thread.
+/// The user's handle of the thread.
 pub struct Handle {
     jobs: Jobs,
     thread: thread::JoinHandle<()>,
 }
 
-/// Waits for something of the thread, and meanwhile calls `look`, whose error ends the wait.
+/// Waits for the thread, and calls `look` meanwhile; an error of `look` ends the wait.
 fn wait<R, E>(
     answer: &Receiver<R>,
     mut look: impl FnMut() -> Result<(), E>,
@@ -180,7 +180,7 @@ fn wait<R, E>(
 }
 
 impl Handle {
-    /// Finds a card in a thread of its own. `is_real`: its time goes on whether anybody listens or not.
+    /// Finds a card in a separate thread. `is_real`: its time runs on whether the host listens or not.
     pub fn open<E>(
         find: impl FnOnce() -> Result<AnyCard, HostError> + Send + 'static,
         is_real: bool,
@@ -212,21 +212,21 @@ impl Handle {
         }))
     }
 
-    /// What does jobs in it.
+    /// Sender of jobs for the thread.
     pub fn jobs(&self) -> Jobs {
         self.jobs.clone()
     }
 
-    /// Ends the thread, with the recording that may be under way.
+    /// Ends the thread, with any recording.
     pub fn close(self) {
-        // Others may still have it.
+        // Other users may still hold it.
         let _ = self.jobs.0.send(Box::new(|owner| owner.is_over = true));
         let _ = self.thread.join();
     }
 }
 
 impl Jobs {
-    /// Does a job in the thread and waits for what comes of it.
+    /// Executes a job in the thread and waits for its result.
     pub fn call<R: Send + 'static, E>(
         &self,
         job: impl FnOnce(&mut Owner) -> Result<R, HostError> + Send + 'static,
@@ -245,6 +245,6 @@ impl Jobs {
 }
 
 fn gone() -> HostError {
-    let text = "the thread of the card has ended; this is a fault of the library, please report it";
+    let text = "the thread of the card has ended; this is a bug in the library, please report it";
     HostError::NoCard(text.into())
 }

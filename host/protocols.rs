@@ -1,5 +1,5 @@
-//! The protocols that a channel may speak, as far as a host has to do with them: beside the folder of each, the one file here that knows
-//! them by name.
+//! The protocols of a channel, as far as the host handles them. Apart from the folder of each, only this file of the crate names
+//! them.
 
 use crate::card::Card;
 use crate::name_plate::Told;
@@ -8,8 +8,8 @@ use crate::HostError;
 use endat_regs::Protocol;
 
 impl<T: Transport> Card<T> {
-    /// What the encoder of a channel tells of itself, or why it does not; none of EnDat, whose encoders have name plates, and where an encoder
-    /// tells nothing.
+    /// Asks the encoder of a channel for its description. Returns the reason if this fails, and `None` for EnDat, whose encoders have name plates,
+    /// and for encoders without a description.
     pub fn ask_encoder(
         &mut self,
         channel: usize,

@@ -1,43 +1,43 @@
-//! What positions are, as somebody says who knows the encoders: `0=17+16` are 17 bits of angle and 16 that count turns in channel 0,
-//! `1=linear` is a scale. It counts before what the card and name plates say.
+//! Position ranges from the user: `0=17+16` means 17 bits of angle and 16 turn bits in channel 0,
+//! `1=linear` a scale. They override the card and the name plates.
 
 use crate::units::Scale;
 use crate::HostError;
 use endat_driver::Range;
 use endat_regs::{Protocol, CHANNELS_MAX};
 
-/// One that is said.
+/// A range from the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Said {
     Linear,
     Rotary { single: u32, multi: u32 },
 }
 
-/// Ranges that the user has given.
+/// Ranges from the user.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ranges([Option<Said>; CHANNELS_MAX]);
 
-/// How it is written.
+/// Format of a range.
 const FORM: &str = "is no range; give bits of the angle and bits that count turns, for example 0=17+16 for channel 0, or 0=linear";
 
-/// Why positions of a channel are not counted on.
+/// Reason why positions of a channel are not unwrapped.
 pub fn unknown(channel: usize) -> String {
-    format!("nobody says where positions of channel {channel} begin anew")
+    format!("the range of positions of channel {channel} is unknown")
 }
 
-/// The same with the remedy of a command that has `--range`.
+/// That reason with the remedy for a command with `--range`.
 pub fn refusal(channel: usize) -> String {
     let why = unknown(channel);
     format!("{why}; give --range {channel}=SINGLE+MULTI (bits of the angle and bits that count turns, as in {channel}=17+16) or --range {channel}=linear")
 }
 
-/// Some positions of a channel have bits outside their range.
+/// Message for positions of a channel with bits outside their range.
 pub fn too_small(channel: usize, count: u64, scale: &Scale) -> String {
     let positions = match count {
         1 => "a position has".to_owned(),
         _ => format!("{count} positions have"),
     };
-    format!("channel {channel}: {positions} bits outside {scale}: the encoder uses more; give --range {channel}=SINGLE+MULTI as its data sheet has it")
+    format!("channel {channel}: {positions} bits outside {scale}: the encoder uses more; give --range {channel}=SINGLE+MULTI according to its data sheet")
 }
 
 impl Ranges {
@@ -66,7 +66,7 @@ impl Ranges {
                     multi: number(multi)?,
                 },
             };
-            // Of any protocol.
+            // Any protocol.
             if said.range(Protocol::Endat).is_none() {
                 return Err(wrong(
                     "the angle has at least 1 bit, and all together are at most 48; give bits that fit",
@@ -81,24 +81,24 @@ impl Ranges {
         Ok(all)
     }
 
-    /// Nothing is said.
+    /// True if no range is given.
     pub fn is_empty(&self) -> bool {
         self.0.iter().all(Option::is_none)
     }
 
-    /// Refuses those of channels that there are not.
+    /// Rejects ranges of absent channels.
     pub fn check(&self, channels: usize) -> Result<(), HostError> {
         match self.0.iter().skip(channels).position(Option::is_some) {
             None => Ok(()),
             Some(beyond) => Err(HostError::Name(format!(
-                "--range = {}: there is no channel of that number; the last one is {}",
+                "--range = {}: the card has no such channel; the last one is {}",
                 channels + beyond,
                 channels.saturating_sub(1)
             ))),
         }
     }
 
-    /// The scale of a channel of this protocol, whose positions have so many bits, if it is said and known how many.
+    /// The scale of a channel with this protocol and position width; `None` if no range is given or the width is unknown.
     pub fn scale(
         &self,
         channel: usize,
@@ -192,7 +192,10 @@ mod tests {
         );
         assert!(said.check(4).is_ok());
         let why = said.check(2).unwrap_err().to_string();
-        assert!(why.contains("--range = 3: there is no channel"), "{why}");
+        assert!(
+            why.contains("--range = 3: the card has no such channel"),
+            "{why}"
+        );
     }
 
     #[test]

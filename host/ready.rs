@@ -1,4 +1,4 @@
-//! What a host does before it reads positions: waits until the card is ready, asks what positions are and whether anything triggers.
+//! Preparation before positions are read: waits until the card is ready, determines position ranges, and checks for a trigger.
 
 use crate::card::Card;
 use crate::mailbox::INITIALISATION;
@@ -11,14 +11,14 @@ use endat_driver::Range;
 use endat_regs::{Part, Protocol};
 use std::time::{Duration, Instant};
 
-/// An initialisation that takes longer is worth a word.
+/// The user is informed about a longer initialisation.
 const LONG: Duration = Duration::from_secs(1);
-/// First results come within this, if any come.
+/// Timeout for first results.
 const FIRST_RESULTS: Duration = Duration::from_secs(1);
 
 impl<T: Transport> Card<T> {
-    /// What positions of a channel are: as [`Card::set_ranges`] was told, else as the encoder says, else as the configuration does. And a
-    /// word about it if the last two contradict each other.
+    /// Scale of a channel: from [`Card::set_ranges`], else from the encoder, else from the configuration. With it a
+    /// note if the last two differ.
     pub fn scale(&mut self, channel: usize) -> Result<(Scale, Option<String>), HostError> {
         let protocol = self.identity().protocol(channel);
         let plate = match self.identity().has(Part::Initialise) && protocol == Protocol::Endat {
@@ -35,12 +35,12 @@ impl<T: Transport> Card<T> {
         let said = self.ranges().scale(channel, protocol, Some(width))?;
         let configured = Scale::of_range(Range::of_words(words, protocol));
         Ok(match (said, own, configured) {
-            // The same, and more of it.
+            // Equal, with the step in addition.
             (Some(Scale::Counted), Some(own @ Scale::Linear { .. }), _) => (own, None),
             (Some(said), ..) => (said, None),
             (None, Some(own), Some(configured)) if !own.agrees(&configured) => {
                 let text = format!(
-                    "channel {channel}: the configuration says {configured}, the encoder {own}: the encoder's is taken; correct single_turn_bits, multi_turn_bits or linear"
+                    "channel {channel}: the configuration says {configured}, the encoder {own}: the encoder's is used; correct single_turn_bits, multi_turn_bits or linear"
                 );
                 (own, Some(text))
             }
@@ -68,7 +68,7 @@ impl<T: Transport> Card<T> {
         Ok(notes?.into_iter().flatten().collect())
     }
 
-    /// Name plates; none of a channel whose encoder the card does not read.
+    /// Name plates; `None` for a channel whose encoder the card does not read.
     pub fn name_plates(&mut self) -> Result<Vec<Option<NamePlate>>, HostError> {
         let identity = *self.identity();
         let has =
@@ -79,7 +79,7 @@ impl<T: Transport> Card<T> {
             .collect()
     }
 
-    /// Channels that speak EnDat.
+    /// EnDat channels.
     fn endat_channels(&self) -> Vec<usize> {
         let identity = self.identity();
         let all = 0..identity.channels;
@@ -87,7 +87,7 @@ impl<T: Transport> Card<T> {
             .collect()
     }
 
-    /// Waits until no encoder is being initialised, or [`INITIALISATION`]; calls `is_long` once if it takes long. Whether one was.
+    /// Waits until no encoder is being initialised, or [`INITIALISATION`]; calls `is_long` once if it takes long. Returns true if one was.
     pub fn wait_until_initialised(&mut self, is_long: impl FnOnce()) -> Result<bool, HostError> {
         if !self.identity().has(Part::Initialise) {
             return Ok(false);
@@ -98,7 +98,7 @@ impl<T: Transport> Card<T> {
         for channel in self.endat_channels() {
             let state = |field| format!("service{channel}.state.{field}");
             let running = self.place(&state("initialising"))?;
-            // Just after power-up the service has not begun.
+            // Just after power-up the service has not started yet.
             let starts = self.place(&state("starts"))?;
             while (self.read(&running)? == 1 || self.read(&starts)? == 0)
                 && begin.elapsed() < INITIALISATION
@@ -114,10 +114,10 @@ impl<T: Transport> Card<T> {
         Ok(has_waited)
     }
 
-    /// The same, and waits until every channel has had a first result, or has none after a second.
+    /// As [`Self::wait_until_initialised`]; then waits until every channel has a first result, or a second has passed.
     pub fn settle(&mut self, is_long: impl FnOnce()) -> Result<(), HostError> {
         let has_waited = self.wait_until_initialised(is_long)?;
-        // Behind an initialisation results are counted on from those before it.
+        // After an initialisation the sequence numbers continue from the earlier ones.
         let before = match has_waited {
             true => self.sequences()?,
             false => vec![0; self.identity().channels],
@@ -126,7 +126,7 @@ impl<T: Transport> Card<T> {
         while Instant::now() < end {
             let now = self.sequences()?;
             let mut steps = now.iter().zip(&before).map(|(n, b)| n.wrapping_sub(*b));
-            // The first frame measures the delay; the second one is as all others.
+            // The first frame measures the delay; the second one is a normal frame.
             if steps.all(|steps| steps > 1) {
                 break;
             }
@@ -140,7 +140,7 @@ impl<T: Transport> Card<T> {
         Ok(results.channels.iter().map(|r| r.sequence).collect())
     }
 
-    /// Refuses a card that nothing triggers: recording sends nothing by itself, and nobody else has the link. `remedy` says how another source is enabled.
+    /// Rejects a card without a trigger: a recording sends no triggers, and no other program has the link. `remedy` says how to enable another source.
     pub fn needs_trigger(&mut self, remedy: &str) -> Result<(), HostError> {
         let sources = self.place("card_config.trigger_sources")?;
         let enabled = self.read(&sources)?;
@@ -150,13 +150,13 @@ impl<T: Transport> Card<T> {
         }
         let what = match is_set("register") {
             true if self.may_run()? => return Ok(()),
-            true => "only trigger_now triggers this card, and who records has the link, so there is nothing to record; enable another source",
+            true => "only trigger_now triggers this card, and a recording occupies the link, so there is nothing to record; enable another source",
             false => "no trigger is enabled, so there is nothing to record; enable one",
         };
         Err(HostError::Refused(format!("{what}, {remedy}")))
     }
 
-    /// Whether a clock may be running, which gives positions without triggers.
+    /// True if a continuous clock may be running, which gives positions without triggers.
     fn may_run(&mut self) -> Result<bool, HostError> {
         if !self.identity().has(Part::Continuous) {
             return Ok(false);
@@ -169,7 +169,7 @@ impl<T: Transport> Card<T> {
         Ok(false)
     }
 
-    /// Reads the word or field of that name.
+    /// Reads the word or field with this name.
     pub fn read_named(&mut self, name: &str) -> Result<u32, HostError> {
         let place = self.place(name)?;
         self.read(&place)

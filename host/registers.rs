@@ -6,29 +6,29 @@ use std::fmt;
 
 pub use endat_regs::{Access, Block, Field, Named, Register, Values, BLOCKS};
 
-/// A word of a card, and perhaps one of its fields.
+/// A word of a card, or one of its fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// Block that it stands in.
+    /// Block of the word.
     pub block: &'static Block,
-    /// Channel whose block it is, 0 for words of the card.
+    /// Channel of the block, 0 for words of the card.
     pub channel: usize,
     /// The word.
     pub register: &'static Register,
-    /// The field, if one is meant.
+    /// The field, if any.
     pub field: Option<&'static Field>,
 }
 
-/// At most 40 characters of what a user typed.
+/// At most 40 characters of the user's text.
 fn shown(text: &str) -> String {
     let clean: String = text.chars().filter(|c| !c.is_control()).take(40).collect();
     format!("{clean:?}")
 }
 
-/// Most names that are proposed for a wrong one.
+/// Most suggestions for a wrong name.
 const PROPOSALS_MAX: usize = 4;
 
-/// `; did you mean ...?`, or nothing: names that end with this one (its block was left out), else the ones that are closest to it.
+/// `; did you mean ...?`, or nothing: names that end with this one (without its block), else the closest names.
 fn proposal(name: &str, channels: usize) -> String {
     let parts: Vec<&str> = name.split('.').collect();
     let (mut behind, mut others) = (Vec::new(), Vec::new());
@@ -57,7 +57,7 @@ fn proposal(name: &str, channels: usize) -> String {
             }
         }
     }
-    // A word before a field of some other word.
+    // A word in front of a field of another word.
     let parts_of = |whole: &String| whole.split('.').count();
     let fewest = behind.iter().map(parts_of).min();
     behind.retain(|whole| Some(parts_of(whole)) == fewest);
@@ -83,18 +83,18 @@ fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
 }
 
 impl Place {
-    /// The place called `name`, on a card with `channels` channels.
+    /// The place with this name, on a card with `channels` channels.
     pub fn named(name: &str, channels: usize) -> Result<Self, HostError> {
         Self::named_among(name, channels, |_| true)
     }
 
-    /// The same on a card that has these blocks; only they are proposed for a block that no card has.
+    /// As [`Self::named`], on a card with these blocks; only they are suggested for an unknown block.
     pub(crate) fn named_among(
         name: &str,
         channels: usize,
         has: impl Fn(&Block) -> bool,
     ) -> Result<Self, HostError> {
-        // The guess before the list of names, which may be long.
+        // The suggestion comes before the list of names, which may be long.
         let fail = |what: String, names: String| {
             Err(HostError::Name(format!(
                 "register = {}: {what}{} ({names})",
@@ -105,7 +105,7 @@ impl Place {
         let mut parts = name.split('.');
         let block_name = parts.next().unwrap_or("");
         let stem = block_name.trim_end_matches(|c: char| c.is_ascii_digit());
-        // The map for people calls the card's own one `config`, too.
+        // The readable map calls the card's block `config`, too.
         let own_name = if block_name == "config" {
             "card_config"
         } else {
@@ -121,7 +121,7 @@ impl Place {
             });
             let names: Vec<String> = names.collect();
             return fail(
-                format!("there is no block {}", shown(block_name)),
+                format!("no block is called {}", shown(block_name)),
                 format!(
                     "write BLOCK.REGISTER or BLOCK.REGISTER.FIELD; blocks are {}; 0 = channel",
                     names.join(", ")
@@ -180,7 +180,7 @@ impl Place {
         }
     }
 
-    /// All words of the map, for a card with so many channels; whether it has them is for [`crate::Card::place`] to say.
+    /// All words of the map, for a card with `channels` channels; [`crate::Card::place`] checks whether the card has them.
     pub fn words(channels: usize) -> impl Iterator<Item = Self> {
         let numbers = move |block: &Block| 0..if block.per_channel { channels } else { 1 };
         BLOCKS.iter().flat_map(move |block| {
@@ -195,7 +195,7 @@ impl Place {
         })
     }
 
-    /// A word that is known to be in the map.
+    /// A word of the map; panics if it is missing.
     pub(crate) fn at(block: &str, register: &str, channel: usize) -> Self {
         let block = BLOCKS.iter().find(|b| b.name == block);
         let register = block.and_then(|b| Some((b, b.register(register)?)));
@@ -208,7 +208,7 @@ impl Place {
         }
     }
 
-    /// A field that is known to be in the map.
+    /// A field of the map; panics if it is missing.
     pub(crate) fn field_at(block: &str, register: &str, field: &str, channel: usize) -> Self {
         let place = Self::at(block, register, channel);
         let field = place.register.field(field).expect("a field of the map");
@@ -223,7 +223,7 @@ impl Place {
         self.block.address(self.register, self.channel)
     }
 
-    /// The number that is meant in a word: the field's, or the whole.
+    /// The number in a word: of the field, or the whole word.
     pub fn of(&self, word: u32) -> u32 {
         self.field.map_or(word, |f| f.of(word))
     }

@@ -1,9 +1,9 @@
-//! The results of all channels, out of the burst that reads them.
+//! Decodes the results of all channels from the burst that reads them.
 
 use endat_driver::{readings, Reading};
 use endat_regs::Protocols;
 
-/// The results of all channels, out of the burst that reads them ([`endat_regs::result_words`]).
+/// The results of all channels, from the burst that reads them ([`endat_regs::result_words`]).
 pub fn of_burst(
     words: &[u32],
     channels: usize,
@@ -19,7 +19,7 @@ mod tests {
     use endat_driver::{AdditionalData as Info, Reading, RESULT_WORDS as WORDS};
     use endat_regs::Protocol;
 
-    /// The bytes of the page are those of a card: what stands beside the high bits of the position is not left out.
+    /// The bytes of the page are those of a card, including the fields next to the high bits of the position.
     #[test]
     fn the_examples_of_the_programming_page_are_results_that_fit() {
         let page = include_str!("../docs/programming.md");
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(reading.infos[0].number(), 4);
         assert_eq!(reading.cause_name(), "none");
         assert_eq!(reading.checked(), reading);
-        // The same words of a channel with another protocol.
+        // The same words in a channel with another protocol.
         let status = 0x00C2_0002;
         let named = |protocol: &Protocol| Reading::new(&[status], *protocol).cause_name();
         let names: Vec<_> = Protocol::ALL.iter().map(named).collect();

@@ -1,4 +1,4 @@
-//! Sample sets out of the stream of bytes: COBS frames with a CRC-16, found again after any garbage.
+//! Decodes sample sets from the byte stream: COBS frames with a CRC-16, resynchronised after any garbage.
 
 use crate::causes;
 use crc::{Crc, CRC_16_IBM_3740};
@@ -10,7 +10,7 @@ use std::mem;
 const CHECK: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
 /// Type of a frame with a sample set, in bits 7..4 of its first byte.
 const SAMPLE_SET: u8 = 1;
-/// The same with additional data.
+/// Type of a frame with a sample set and additional data.
 const INFO_SET: u8 = 2;
 /// A position of a running clock; bits 3..0 are its channel.
 const RUN_SET: u8 = 3;
@@ -24,7 +24,7 @@ const INFO_BYTES: usize = 8;
 const CHANNELS_MAX: usize = 8;
 /// Bytes of the check sum.
 const CHECK_BYTES: usize = 2;
-/// Longest frame, COBS included; what is longer is garbage.
+/// Longest frame, COBS included; longer ones are garbage.
 const ENCODED_MAX: usize =
     HEAD_BYTES + CHANNELS_MAX * (CHANNEL_BYTES + INFO_BYTES) + CHECK_BYTES + 1;
 
@@ -35,13 +35,13 @@ pub struct Sample {
     pub position: u64,
     /// Code of the primary cause, of the channel's protocol; 0 = none.
     pub cause: u8,
-    /// There is a good position.
+    /// A good position is available.
     pub valid: bool,
-    /// This trigger brought it.
+    /// This trigger brought the position.
     pub fresh: bool,
     /// The channel took this trigger.
     pub taken: bool,
-    /// It did, but the next trigger came before its result.
+    /// The channel took this trigger, but the next trigger came before its result.
     pub missing: bool,
     /// Raw flags, as `result.status.line`.
     pub line: u8,
@@ -50,7 +50,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Position and status are those of an earlier trigger: the last one that the channel took, whose set said `missing`.
+    /// Position and status belong to an earlier trigger: the last one that the channel took, whose set has `missing`.
     pub fn is_late(&self) -> bool {
         (!self.taken || self.missing) && (self.valid || self.fresh || self.cause != 0)
     }
@@ -65,36 +65,36 @@ impl Sample {
             | flag(self.missing, status::MISSING)
     }
 
-    /// Name of the primary cause, on a channel that speaks this protocol.
+    /// Name of the primary cause, on a channel with this protocol.
     pub fn cause_name(&self, protocol: Protocol) -> &'static str {
         causes::name(causes::of_code(self.cause, protocol))
     }
 }
 
-/// What one trigger brought; or one position of a running clock.
+/// Results of one trigger, or one position of a running clock.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SampleSet {
-    /// The channel whose running clock brought its only sample, which no trigger asked for.
+    /// The channel whose running clock brought the only sample, without a trigger.
     pub run: Option<usize>,
     /// Sample sets that the card dropped just before this one; 255 = that many or more.
     pub lost: u8,
-    /// Number of the trigger, wrapping; of a running clock: of the channel's result.
+    /// Number of the trigger, wrapping; for a running clock of the channel's result.
     pub sequence: u16,
-    /// System clock cycle of the trigger, wrapping; of a running clock: of the position.
+    /// System clock cycle of the trigger, wrapping; for a running clock of the position.
     pub timestamp: u32,
     /// One for each channel.
     pub channels: Vec<Sample>,
 }
 
-/// Places in a sample's status, which is the upper half of the word `result.status` and two bits more.
+/// Fields of a sample's status: the upper half of the word `result.status` and two more bits.
 mod status {
     /// Primary cause.
     pub const CAUSE: u16 = 0x1F;
     /// The channel took this trigger.
     pub const TAKEN: u16 = 1 << 5;
-    /// There is a good position.
+    /// A good position is available.
     pub const VALID: u16 = 1 << 6;
-    /// This trigger brought it.
+    /// This trigger brought the position.
     pub const FRESH: u16 = 1 << 7;
     /// Raw flags of the line.
     pub const LINE_LSB: u32 = 8;
@@ -104,7 +104,7 @@ mod status {
     pub const MISSING: u16 = 1 << 15;
 }
 
-/// The additional data of a channel out of their bytes.
+/// The additional data of a channel from their bytes.
 fn infos(bytes: &[u8]) -> [Info; 2] {
     [0, 1].map(|n: usize| {
         let word = u32::from_le_bytes([bytes[3 * n], bytes[3 * n + 1], bytes[3 * n + 2], 0]);
@@ -114,7 +114,7 @@ fn infos(bytes: &[u8]) -> [Info; 2] {
 }
 
 impl SampleSet {
-    /// A frame without COBS; none if it is no sample set, or damaged.
+    /// A frame without COBS; `None` if it is not a sample set, or damaged.
     fn new(frame: &[u8]) -> Option<Self> {
         let (body, check) = frame.split_at_checked(frame.len().checked_sub(CHECK_BYTES)?)?;
         let (kind, low) = (body.first()? >> 4, usize::from(body[0] & 0xF));
@@ -159,7 +159,7 @@ impl SampleSet {
         })
     }
 
-    /// Its frame, as a card sends it: type 1, or 2 where its channels have additional data, or 3 for a running clock.
+    /// The frame as a card sends it: type 1, or 2 with additional data, or 3 for a running clock.
     pub fn to_frame(&self) -> Vec<u8> {
         let has_infos = self.channels.iter().any(|c| c.infos.is_some());
         let (kind, low) = match (self.run, has_infos) {
@@ -190,25 +190,25 @@ impl SampleSet {
     }
 }
 
-/// What became of the bytes of a stream.
+/// Counters of a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Sample sets.
     pub sets: u64,
-    /// Sample sets that the card dropped, as it says itself.
+    /// Sample sets that the card dropped, according to the card.
     pub lost_in_card: u64,
     /// Frames that were damaged on the way.
     pub damaged: u64,
-    /// Triggers of which no sample set came, whatever the reason.
+    /// Triggers without a sample set, for any reason.
     pub missing: u64,
 }
 
-/// Finds sample sets in bytes.
+/// Finds sample sets in received bytes.
 #[derive(Clone, Debug, Default)]
 pub struct Decoder {
     frame: Vec<u8>,
     is_too_long: bool,
-    /// Nothing is known of the bytes before: the first frame may be half of one.
+    /// Clear if earlier bytes are unknown: the first frame may be incomplete.
     is_settled: bool,
     last_sequence: Option<u16>,
     counts: Counts,
@@ -216,7 +216,7 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// Takes a byte.
+    /// Processes a byte.
     pub fn push(&mut self, byte: u8) {
         if byte != 0 {
             if self.frame.len() < ENCODED_MAX {
@@ -257,22 +257,22 @@ impl Decoder {
         self.sets.push(set);
     }
 
-    /// The sets that have come.
+    /// Removes and returns the received sets.
     pub fn take(&mut self) -> Vec<SampleSet> {
         mem::take(&mut self.sets)
     }
 
-    /// How many frames were damaged so far.
+    /// Number of damaged frames so far.
     pub fn damaged(&self) -> u64 {
         self.counts.damaged
     }
 
-    /// Takes bytes back that were no frames: so many were damaged before them.
+    /// Discounts bytes that were not frames: `damaged` frames were damaged before them.
     pub(crate) fn forgive(&mut self, damaged: u64) {
         self.counts.damaged = damaged;
     }
 
-    /// Forgets the frame under way, sets that nobody took, and where the sequence stood: another stream begins.
+    /// Drops the frame under way, the queued sets and the last sequence number: another stream begins.
     pub fn forget(&mut self) {
         self.frame.clear();
         self.sets.clear();
@@ -352,7 +352,7 @@ mod tests {
         assert_eq!(expected.to_frame(), bytes(FRAME));
     }
 
-    /// Two frames at most are lost to whatever happens in one place.
+    /// Damage in one place loses at most two frames.
     #[test]
     fn after_loss_insertion_and_corruption_it_is_there_again() {
         let frames: Vec<Vec<u8>> = (0..6).map(|n| set(n).to_frame()).collect();

@@ -1,4 +1,4 @@
-//! T-format encoders: requests of their own, beside those of the triggers.
+//! T-format encoders: requests in addition to those of the triggers.
 
 use crate::card::Card;
 use crate::name_plate::Told;
@@ -8,10 +8,10 @@ use crate::HostError;
 use endat_regs::Protocol;
 use std::time::Instant;
 
-/// Request whose reply has everything.
+/// Request whose reply has all fields.
 const EVERYTHING: u32 = 3;
 
-/// What a T-format encoder tells of itself.
+/// Description of a T-format encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TFormatState {
     /// Kind of encoder (ENID).
@@ -36,7 +36,7 @@ impl TFormatState {
 }
 
 impl<T: Transport> Card<T> {
-    /// Asks the T-format encoder of channel `channel`; the inner error says why it has not told.
+    /// Asks the T-format encoder of channel `channel`; the inner error is the reason for a missing reply.
     pub fn t_format_state(
         &mut self,
         channel: usize,
@@ -66,7 +66,7 @@ impl<T: Transport> Card<T> {
         if of(&answer, "done", word) == 0 || of(&answer, "cause", word) != 0 {
             let cause = answer.register.field("cause");
             let why = cause.and_then(|field| field.told(word, Protocol::TFormat));
-            return Ok(Err(why.unwrap_or_else(|| "no end of the request".into())));
+            return Ok(Err(why.unwrap_or_else(|| "the request did not end".into())));
         }
         let word = self.read(&fields)?;
         Ok(Ok(TFormatState {

@@ -1,4 +1,4 @@
-//! Bytes to a card and back.
+//! Byte links to a card.
 
 use crate::HostError;
 use std::io::{self, ErrorKind, Read, Write};
@@ -11,35 +11,35 @@ pub trait Transport {
     /// Sends all of `bytes`.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Waits at most `wait` for bytes, and returns how many came: 0 = none. With a wait of zero, what is there already.
+    /// Waits at most `wait` for bytes, and returns their number: 0 = none. A wait of zero returns bytes already received.
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
 
-    /// How its time runs, from any beginning: an answer is waited for in it. That of a simulated card may be slower than ours.
+    /// Time of the link, from any start; timeouts use it. The time of a simulated card may be slower than real time.
     fn elapsed(&self) -> Duration {
         static BEGIN: OnceLock<Instant> = OnceLock::new();
         BEGIN.get_or_init(Instant::now).elapsed()
     }
 
-    /// Whether it is there now, and how often it was lost before.
+    /// True if the link is open, and how often it was lost before.
     fn state(&self) -> LinkState {
         LinkState::default()
     }
 
-    /// Why the other end has closed it last, in its own words; none since it has answered.
+    /// Reason why the other end closed the link last, in its words; `None` since the last answer.
     fn refusal(&self) -> Option<&str> {
         None
     }
 }
 
-/// How a virtual card begins the line that a connection gets which it does not take. No answer of a card begins so.
+/// Start of the line that a virtual card sends to a rejected connection. No answer of a card begins like this.
 pub const REFUSAL: &str = "endat-card: ";
 
-/// What has become of a link.
+/// State of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinkState {
-    /// It is open.
+    /// The link is open.
     pub is_open: bool,
-    /// How often it was lost and opened again.
+    /// How often the link was lost and reopened.
     pub reopened: u64,
 }
 
@@ -74,7 +74,7 @@ impl<T: Transport + ?Sized> Transport for Box<T> {
     }
 }
 
-/// A time-out is no error: nothing came.
+/// A time-out is not an error: no bytes were received.
 fn or_nothing(result: io::Result<usize>) -> io::Result<usize> {
     match result {
         Err(e)
@@ -91,7 +91,7 @@ fn or_nothing(result: io::Result<usize>) -> io::Result<usize> {
     }
 }
 
-/// Ports take a wait of zero for an endless one, or refuse it.
+/// Ports treat a wait of zero as endless, or reject it.
 const SHORTEST: Duration = Duration::from_millis(1);
 
 struct Serial(Box<dyn serialport::SerialPort>);
@@ -126,7 +126,7 @@ impl Transport for Tcp {
         let result = self.0.read(buffer);
         self.0.set_nonblocking(false)?;
         match result {
-            // The end of a socket that has been closed; a time-out is an error of its own.
+            // The end of a closed socket; a time-out is a separate error.
             Ok(0) => Err(ErrorKind::ConnectionAborted.into()),
             Ok(count) if buffer[..count].starts_with(REFUSAL.as_bytes()) => {
                 let text = String::from_utf8_lossy(&buffer[REFUSAL.len()..count]);
@@ -137,7 +137,7 @@ impl Transport for Tcp {
     }
 }
 
-/// How long opening a TCP connection may take.
+/// Timeout for opening a TCP connection.
 const CONNECT_WAIT: Duration = Duration::from_secs(3);
 
 fn open_once(address: &str, baud: u32) -> io::Result<Box<dyn Transport>> {
@@ -159,7 +159,7 @@ fn open_once(address: &str, baud: u32) -> io::Result<Box<dyn Transport>> {
     Ok(Box::new(Serial(port.map_err(io::Error::from)?)))
 }
 
-/// What helps where this could not be opened.
+/// Remedy for an address that could not be opened.
 fn remedy(address: &str, error: ErrorKind) -> &'static str {
     let has_port = |socket: &str| {
         let port = socket.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
@@ -170,14 +170,14 @@ fn remedy(address: &str, error: ErrorKind) -> &'static str {
             "write tcp:HOST:PORT, with a number from 1 to 65535 as PORT"
         }
         Some(_) if error == ErrorKind::ConnectionRefused => {
-            "nobody listens there: is `card`, or the serial server, running with that port?"
+            "the connection was refused: is `card`, or the serial server, running with that port?"
         }
         None if has_port(address) => "write tcp: before it, or give the card's serial port",
         _ => "give the card's serial port, or tcp:HOST:PORT",
     }
 }
 
-/// A port that is opened again when it was unplugged and has come back.
+/// A port that is reopened after it was unplugged and has come back.
 pub struct Port {
     address: String,
     baud: u32,
@@ -187,7 +187,7 @@ pub struct Port {
 }
 
 impl Port {
-    /// Opens `tcp:HOST:PORT`, or the serial port of that name with this baud rate.
+    /// Opens `tcp:HOST:PORT`, or the serial port with this name and baud rate.
     pub fn open(address: &str, baud: u32) -> Result<Self, HostError> {
         let open = open_once(address, baud).map_err(|error| HostError::Link {
             address: address.to_owned(),
@@ -204,12 +204,12 @@ impl Port {
         })
     }
 
-    /// How often it was opened again.
+    /// How often it was reopened.
     pub fn reopened(&self) -> u64 {
         self.reopened
     }
 
-    /// Does something with the open port; one that fails is closed, and tried again with the next call.
+    /// Uses the open port; a failing port is closed, and retried with the next call.
     fn with(
         &mut self,
         wait: Duration,

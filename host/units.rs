@@ -11,9 +11,9 @@ pub enum Scale {
     Rotary {
         /// Measuring steps per revolution.
         steps_per_turn: u64,
-        /// Number of turns that the encoder counts, 1 if it counts none; the position is 0 again after the last.
+        /// Number of turns that the encoder counts, 1 if it counts none; the position wraps to 0 after the last.
         turns: u64,
-        /// Lowest bit that counts turns, where unused bits are below; else turns are counted in whole `steps_per_turn`.
+        /// Lowest turn bit, if unused bits are below it; else turns are counted in whole `steps_per_turn`.
         turns_at: Option<u32>,
     },
     /// A place on a scale, with the measuring step in nanometres.
@@ -21,11 +21,11 @@ pub enum Scale {
         /// Measuring step in nanometres.
         step_nm: f64,
     },
-    /// A place on a scale, whose measuring step nobody says.
+    /// A place on a scale with an unknown measuring step.
     Counted,
-    /// Counts with an unknown range: they are not counted on, and two of them have no difference.
+    /// Counts with an unknown range: they are not unwrapped, and have no differences.
     Counts {
-        /// Lowest bit that counts turns, where that is known at least.
+        /// Lowest turn bit, if known.
         turns_at: Option<u32>,
     },
 }
@@ -37,11 +37,11 @@ pub struct InUnits {
     pub value: f64,
     /// `deg`, `mm` or `counts`.
     pub unit: &'static str,
-    /// Whole turns, where it is known what a turn is.
+    /// Whole turns, if the length of a turn is known.
     pub turns: Option<u64>,
 }
 
-/// The bits below one.
+/// Mask of the bits below `bit`.
 const fn below(bit: u32) -> u64 {
     match bit {
         64.. => u64::MAX,
@@ -50,12 +50,12 @@ const fn below(bit: u32) -> u64 {
 }
 
 impl Scale {
-    /// A singleturn encoder of `bits` bits.
+    /// A singleturn encoder with `bits` bits.
     pub const fn singleturn(bits: u32) -> Self {
         Self::of_bits(bits, 0, None)
     }
 
-    /// An encoder with so many bits of angle and of turns; these begin at `turns_at`, or right above the angle.
+    /// An encoder with these bits of angle and of turns; the turns begin at `turns_at`, or right above the angle.
     pub const fn of_bits(single: u32, multi: u32, turns_at: Option<u32>) -> Self {
         Self::Rotary {
             steps_per_turn: below(single) + 1,
@@ -81,12 +81,12 @@ impl Scale {
         }
     }
 
-    /// Whether the range is known, so that positions can be counted on and compared.
+    /// True if the range is known, so that positions can be unwrapped and compared.
     pub const fn is_known(&self) -> bool {
         !matches!(self, Self::Counts { .. })
     }
 
-    /// Measuring steps after which positions wrap: those of all turns. None for a linear scale and for an unknown range.
+    /// Measuring steps after which positions wrap: those of all turns. `None` for a linear scale and for an unknown range.
     pub const fn range(&self) -> Option<u64> {
         match *self {
             Self::Rotary {
@@ -98,7 +98,7 @@ impl Scale {
         }
     }
 
-    /// A position in measuring steps that follow each other, unused bits left out; of counts that nobody explains those below the turns.
+    /// A position in consecutive measuring steps, without unused bits; for counts with an unknown range the bits below the turns.
     pub const fn steps(&self, position: u64) -> u64 {
         match *self {
             Self::Rotary {
@@ -118,7 +118,7 @@ impl Scale {
         }
     }
 
-    /// Whether a position has no bit outside those of the angle and of the turns; if it has, the encoder uses more of them than the scale has.
+    /// True if a position has no bit outside those of the angle and of the turns; otherwise the encoder uses more bits than the scale has.
     pub const fn fits(&self, position: u64) -> bool {
         match *self {
             Self::Rotary {
@@ -169,14 +169,14 @@ impl Scale {
         }
     }
 
-    /// Measuring steps, however many and to which side, in the unit of [`Scale::convert`].
+    /// Measuring steps, of any size and sign, in the unit of [`Scale::convert`].
     pub fn value(&self, steps: i128) -> f64 {
         match *self {
             Self::Rotary { steps_per_turn, .. } => {
                 let turn = steps_per_turn.max(1);
-                // Towards 0: a step back from 0 keeps all its digits.
+                // Rounds towards 0: a step back from 0 keeps all its digits.
                 let (turns, within) = match (i64::try_from(steps), i64::try_from(turn)) {
-                    // A division of 128 bits costs more than all else of a row.
+                    // A 128-bit division costs more than the rest of a row.
                     (Ok(steps), Ok(turn)) => ((steps / turn) as f64, (steps % turn) as f64),
                     _ => {
                         let turn = i128::from(turn);
@@ -199,7 +199,7 @@ impl Scale {
         }
     }
 
-    /// The same in radians, metres, or counts.
+    /// A position in radians, metres, or counts.
     pub fn si(&self, position: u64) -> f64 {
         let units = self.convert(position);
         match self {
@@ -209,18 +209,18 @@ impl Scale {
         }
     }
 
-    /// The value in units at which a turn wraps; none for a linear scale and for an unknown range.
+    /// The value in units at which a turn wraps; `None` for a linear scale and for an unknown range.
     pub fn wraps_at(&self) -> Option<f64> {
         matches!(self, Self::Rotary { .. }).then_some(360.0)
     }
 
-    /// Whether two say the same, as far as both say it.
+    /// True if two scales agree in everything that both define.
     pub fn agrees(&self, other: &Self) -> bool {
         let is_scale = |one: &Self| matches!(one, Self::Linear { .. } | Self::Counted);
         self == other || is_scale(self) && is_scale(other)
     }
 
-    /// Number of turns that the encoder counts; none for a linear scale and for an unknown range.
+    /// Number of turns that the encoder counts; `None` for a linear scale and for an unknown range.
     pub const fn turns(&self) -> Option<u64> {
         match *self {
             Self::Rotary { turns, .. } => Some(turns),
@@ -228,7 +228,7 @@ impl Scale {
         }
     }
 
-    /// Digits behind the point that show one measuring step.
+    /// Decimal places for one measuring step.
     pub fn digits(&self) -> usize {
         (-self.step().log10()).ceil().clamp(0.0, 12.0) as usize
     }
@@ -301,7 +301,7 @@ mod tests {
         assert_eq!(unknown.convert(1 << 30).turns, None);
     }
 
-    /// Seven of the 24 bits of angle are not used: the position goes from bit 16 to bit 24.
+    /// Seven of the 24 bits of angle are unused: the position continues from bit 16 to bit 24.
     #[test]
     fn unused_bits_between_angle_and_turns_count_for_nothing() {
         let scale = Scale::of_bits(17, 16, Some(24));

@@ -1,4 +1,4 @@
-//! Whether the card at the other end is still the one that it was, and has run on: asked after a silence, and when a lost link is back.
+//! Checks that the card at the link is still the same and has not restarted: asked after a silence, and after a lost link is back.
 
 use crate::card::{Card, Identity};
 use crate::registers::Place;
@@ -7,48 +7,48 @@ use crate::HostError;
 use endat_regs::ID;
 use std::hash::{BuildHasher, RandomState};
 
-/// What is known of a card from earlier.
+/// Known state of a card from earlier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Witness {
     triggers: u32,
-    /// What was left in the card's scratch bits, which a reset clears: the count alone does not show a restart after which the card has
-    /// soon counted more than before. None where it was not taken.
+    /// Mark in the card's scratch bits, which a reset clears. The count alone does not show a restart after which the card has
+    /// soon counted more than before. `None` if the card did not accept it.
     mark: Option<u32>,
 }
 
 /// Registers of a card that has answered.
 struct Answer {
-    /// From the first on.
+    /// Words from the first one on.
     words: Vec<u32>,
-    /// None if it pushes nothing although it should.
+    /// `None` if the card does not push although it should.
     mark: Option<u32>,
 }
 
 impl Witness {
-    /// Remembers a card as it is now, and marks it.
+    /// Records the present state of a card, and marks it.
     pub fn new<T: Transport>(card: &mut Card<T>) -> Result<Self, HostError> {
         let triggers = card.read(&Place::at("card", "trigger_count", 0))?;
         let scratch = scratch();
-        // Another one each time, so that a card of the same configuration is another one, too; 0 is what a reset leaves.
+        // A different mark each time, so that a card with the same configuration is recognised as another one; a reset leaves 0.
         let mark = 1.max(scratch.of(RandomState::new().hash_one(triggers) as u32));
         card.write(&scratch, mark)?;
         let mark = Some(mark).filter(|mark| card.read(&scratch).is_ok_and(|is| is == *mark));
         Ok(Self { triggers, mark })
     }
 
-    /// Triggers since the card's reset, when it was last asked.
+    /// Triggers since the card's reset, when last asked.
     pub fn triggers(&self) -> u32 {
         self.triggers
     }
 
-    /// Asks the card: whether it has answered, and an error if it is another one, or has begun anew. Whatever was counted, its triggers
-    /// and its time among it, does not go on then.
+    /// Asks the card: true if it has answered, and an error if it is another one, or has restarted. Its counts, such as triggers
+    /// and time, do not continue then.
     pub fn ask<T: Transport>(&mut self, card: &mut Card<T>) -> Result<bool, HostError> {
         let Some(mut now) = answer(card)? else {
             return Ok(false);
         };
         if now.mark.is_some() && self.verdict(card.identity(), &now).is_err() {
-            // Answers have no check: a byte may have been changed on its way.
+            // Answers have no check sum: a byte may have been changed on its way.
             match answer(card)? {
                 Some(again) => now = again,
                 None => return Ok(false),
@@ -76,12 +76,12 @@ impl Witness {
         }
         let Some(mark) = now.mark else {
             return refused(
-                "the card was restarted, or another program has used it: it does not push its stream any more".into(),
+                "the card was restarted, or another program has used it: it no longer pushes its stream".into(),
             );
         };
         if self.mark.is_some_and(|was| was != mark) {
             return refused(format!(
-                "the card was restarted, or another one is there, or another program has used it: what was left in {} is gone",
+                "the card was restarted, or replaced, or another program has used it: the mark in {} is gone",
                 scratch()
             ));
         }
@@ -89,12 +89,12 @@ impl Witness {
     }
 }
 
-/// The bits for a mark.
+/// The scratch bits.
 fn scratch() -> Place {
     Place::field_at("card_config", "hold", "scratch", 0)
 }
 
-/// Where the count of triggers stands.
+/// Address of the trigger count.
 fn place() -> usize {
     usize::from(Place::at("card", "trigger_count", 0).address())
 }
@@ -104,7 +104,7 @@ impl Answer {
         self.words[place()]
     }
 
-    /// None if it is no card, or has fallen silent meanwhile; an error if nobody answers.
+    /// `None` if it is not a card, or has stopped answering; an error if nothing answers.
     fn read<T: Transport>(card: &mut Card<T>) -> Result<Option<Self>, HostError> {
         let words = card.bridge().read(0, place() + 1)?;
         let mark = match card.read(&scratch()) {
@@ -118,12 +118,12 @@ impl Answer {
     }
 }
 
-/// Whether these words are the first ones of a card.
+/// True if these words are the first ones of a card.
 fn is_card(words: &[u32]) -> bool {
     words[0] == ID
 }
 
-/// What the card answers; none if nobody answers, or no card.
+/// The card's answer; `None` if nothing, or not a card, answers.
 fn answer<T: Transport>(card: &mut Card<T>) -> Result<Option<Answer>, HostError> {
     let damaged = card.bridge().decoder().damaged();
     match Answer::read(card) {
@@ -131,7 +131,7 @@ fn answer<T: Transport>(card: &mut Card<T>) -> Result<Option<Answer>, HostError>
         Err(HostError::Silent { .. }) => return Ok(None),
         now => return now,
     }
-    // A card that has begun anew pushes nothing, and its answers have no marker. One that was only asleep may go on at any moment.
+    // A restarted card pushes nothing, and its answers have no marker. One that only paused may continue at any moment.
     let words = card.bridge().read_unmarked(place() + 1, is_card)?;
     Ok(words.map(|words| {
         card.bridge().set_pushes(false);

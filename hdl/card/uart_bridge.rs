@@ -184,7 +184,7 @@ impl Logic for UartBridge {
         if self.transmitter.accept.val() & !self.from_stream.val() {
             self.marker.d.next = false;
         }
-        // The first answer after the last frame has the mark, too, so that the host can tell it from a frame.
+        // The first answer after the last frame has the mark, too, so that the host can distinguish it from a frame.
         if self.pushed.push.val() {
             self.marked.d.next = true;
         }

@@ -1,29 +1,29 @@
 //! Number and time of rows, not wrapping.
 
-/// Makes numbers that wrap into numbers that do not: two rows must be less than 2^16 triggers and 2^32 cycles apart.
+/// Extends wrapping numbers. Two rows must be less than 2^16 triggers and 2^32 cycles apart.
 #[derive(Clone, Debug, Default)]
 pub struct Clock {
     pub last: Option<(u16, u32)>,
-    /// A running clock's position since the last trigger, and its place in time.
+    /// Last position of a running clock since the last trigger, with its extended time.
     passed: Option<(u32, u64)>,
     pub trigger: u64,
     pub cycles: u64,
-    /// What the card's own count of triggers is more than `trigger`.
+    /// Difference of the card's trigger count and `trigger`.
     above: u32,
-    /// How many triggers there have been since the last row, as the card has counted them behind a pause.
+    /// Triggers since the last row, according to the card's count after a pause.
     ahead: Option<u32>,
-    /// So many rows on, the number has wrapped unseen, and how often.
+    /// After this many rows the number has wrapped unseen, this many times.
     behind: Option<(usize, u64)>,
 }
 
-/// How often a number has wrapped that has gone on by `low`, seen in 16 bits, while the card has counted about `ahead`.
+/// Number of wraps of a number that has advanced by `low` modulo 2^16, while the card has counted about `ahead`.
 fn wraps(ahead: u32, low: u64) -> u64 {
     (u64::from(ahead) + 0x8000).saturating_sub(low) >> 16
 }
 
 impl Clock {
-    /// Takes the card's own count of triggers: over a pause the number of a trigger may wrap more than once. `before` are numbers and
-    /// moments of rows that came before the count did and have not been stepped to: the pause was the host's, or lies among them.
+    /// Uses the card's trigger count: during a pause the number of a trigger may wrap more than once. `before` has the numbers and
+    /// times of rows that arrived before the count and are not processed yet: the pause is before or among them.
     pub fn counted(&mut self, triggers: u32, before: &[(u16, u32)]) {
         let Some((mut number, mut moment)) = self.last else {
             self.above = triggers;
@@ -46,7 +46,7 @@ impl Clock {
         }
     }
 
-    /// Wraps of the number that is this row's alone to tell.
+    /// Wraps of the number that apply to this row.
     fn unseen_wraps(&mut self, low: u64) -> u64 {
         let told = self.ahead.take().map_or(0, |ahead| wraps(ahead, low));
         match self.behind {
@@ -62,7 +62,7 @@ impl Clock {
         }
     }
 
-    /// Takes a trigger's number and moment; gives how many were missing before it.
+    /// Processes a trigger's number and time; returns the number of missing triggers before it.
     pub fn step(&mut self, sequence: u16, timestamp: u32) -> u64 {
         let missing = match self.last {
             None => {
@@ -88,7 +88,7 @@ impl Clock {
         missing
     }
 
-    /// Takes the moment of a running clock's position; gives its place in time.
+    /// Processes the time of a running clock's position; returns its extended time.
     pub fn pass(&mut self, timestamp: u32) -> u64 {
         let known = self
             .passed
@@ -102,7 +102,7 @@ impl Clock {
     }
 }
 
-/// The place in time of a moment shortly before or after one whose place is known.
+/// Extended time of an instant near a known one.
 fn near((known, cycles): (u32, u64), timestamp: u32) -> u64 {
     let since = timestamp.wrapping_sub(known) as i32;
     cycles.saturating_add_signed(since.into())
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!([0xFFFF_FFF0, 0x10].map(|t| clock.pass(t)), [0xF0, 0x110]);
         // Each channel has its own delay until its position is sent.
         assert_eq!(clock.pass(8), 0x108);
-        // The trigger was before the position that came last.
+        // The trigger was before the last received position.
         assert_eq!((clock.step(8, 0xC), clock.cycles), (0, 0x10C));
         // A run of many seconds.
         for n in 1..20u32 {
@@ -134,7 +134,7 @@ mod tests {
     fn over_a_pause_the_cards_own_count_tells_how_many_were_missed() {
         for begin in [0x0003_0005u32, 0x0002_FFF0, 0xFFFF_FFF0] {
             let mut clock = Clock::default();
-            // Asked some triggers before the first row, and some before or after the first one behind the pause.
+            // The count is read some triggers before the first row, and some before or after the first row after the pause.
             clock.counted(begin.wrapping_sub(20), &[]);
             clock.step(begin as u16, 0);
             for late in [0, 3, u32::MAX - 2] {
@@ -144,20 +144,20 @@ mod tests {
                 assert_eq!(clock.step(now as u16, 0), 99_999, "{begin:#x} {late}");
                 assert_eq!(clock.trigger, before + 100_000);
             }
-            // Nothing was missed: the count is that of now.
+            // No triggers were missed: the count is the current one.
             clock.counted(begin.wrapping_add(300_000), &[]);
             let next = begin.wrapping_add(300_001) as u16;
             assert_eq!(clock.step(next, 0), 0);
         }
     }
 
-    /// Catches a pause of the host that is taken for one of the card, and the other way round: rows wait, and the count is of now.
+    /// Catches a pause of the host that is counted as a pause of the card, and the reverse: rows wait, and the count is current.
     #[test]
     fn rows_that_came_before_the_count_are_not_behind_it() {
         let rows = |numbers: std::ops::Range<u32>| -> Vec<(u16, u32)> {
             numbers.map(|n| (n as u16, n * 100)).collect()
         };
-        // The host has slept over 80 000 triggers, whose rows are all there.
+        // The host paused for 80 000 triggers, and all their rows are available.
         let mut clock = Clock::default();
         clock.counted(0, &[]);
         clock.step(1, 100);
@@ -167,7 +167,7 @@ mod tests {
             assert_eq!(clock.step(*number, *moment), 0);
         }
         assert_eq!(clock.trigger, 80_001);
-        // The card has been silent for 100 000 triggers, and ten rows behind that came before its count.
+        // The card was silent for 100 000 triggers, and ten rows after that arrived before its count.
         let mut waiting = rows(80_002..80_007);
         waiting.extend(rows(180_007..180_017));
         clock.counted(180_020, &waiting);

@@ -1,5 +1,5 @@
-//! A connection of a client: whole lines come in, answers and data go out. Both ways have a buffer that ends: a client that sends more than
-//! it takes is not read, and one that takes nothing is dropped.
+//! A client connection: whole lines come in, answers and data go out. Both directions have limited buffers: the server stops reading a client that sends more than
+//! it receives, and drops one that receives nothing.
 
 use super::control::Seen;
 use std::collections::VecDeque;
@@ -7,20 +7,20 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-/// Longest line of a client.
+/// Longest line from a client.
 const LINE_MAX: usize = 4096;
-/// Bytes of lines that wait for their answers. More stays in the buffers of the system, and then with the client.
+/// Bytes of lines that wait for their answers. The rest stays in the buffers of the system, and then with the client.
 const INBOX_MAX: usize = 1 << 14;
-/// Bytes of answers that a client may leave; until it takes some, its lines wait.
+/// Most unread bytes of answers; until the client reads some, its lines wait.
 const ANSWERS_MAX: usize = 1 << 16;
-/// Bytes of data that a client may leave.
+/// Most unread bytes of data.
 const DATA_MAX: usize = 1 << 23;
 /// Answers are sent in pieces of about this size.
 const PIECE: usize = 1 << 12;
-/// A client for which a byte has waited this long is dropped.
+/// A client is dropped if a byte has waited this long.
 pub const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Bytes on their way out, and since when the first of them has waited.
+/// Bytes to send, and the time since which the first of them has waited.
 struct Piece {
     bytes: Vec<u8>,
     since: Instant,
@@ -30,25 +30,25 @@ struct Piece {
 pub struct Client {
     stream: TcpStream,
     patience: Duration,
-    /// Bytes that have come; lines before `taken` have been answered, and up to `searched` there is no further end of a line.
+    /// Received bytes; lines before `taken` have been answered, and up to `searched` there is no further line end.
     inbox: Vec<u8>,
     taken: usize,
     searched: usize,
     outbox: VecDeque<Piece>,
-    /// Bytes of the first piece that have gone, and bytes of all pieces that have not.
+    /// Sent bytes of the first piece, and unsent bytes of all pieces.
     sent: usize,
     waiting: usize,
-    /// What it has been told of values.
+    /// Values reported to the client.
     pub seen: Seen,
-    /// When the last byte came from it.
+    /// Time of the last received byte.
     heard: Instant,
-    /// It sends nothing more.
+    /// The client sends nothing more.
     has_ended: bool,
     is_gone: bool,
 }
 
 impl Client {
-    /// A connection that waits for nobody.
+    /// A non-blocking connection.
     pub fn new(stream: TcpStream, patience: Duration) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
         stream.set_nodelay(true)?;
@@ -68,27 +68,27 @@ impl Client {
         })
     }
 
-    /// When the last byte came from it.
+    /// Time of the last received byte.
     pub fn heard(&self) -> Instant {
         self.heard
     }
 
-    /// Bytes that it has not taken.
+    /// Bytes that the client has not read.
     pub fn waiting(&self) -> usize {
         self.waiting
     }
 
-    /// It is dropped, or has left.
+    /// The client has been dropped, or has left.
     pub fn is_gone(&self) -> bool {
         self.is_gone
     }
 
-    /// It sends nothing more, and may have left.
+    /// The client sends nothing more, and may have left.
     pub fn has_ended(&self) -> bool {
         self.has_ended
     }
 
-    /// It sends nothing more, and has every answer.
+    /// The client sends nothing more, and has received every answer.
     pub fn is_served(&self) -> bool {
         self.has_ended && self.outbox.is_empty() && !self.has_line()
     }
@@ -97,7 +97,7 @@ impl Client {
         self.inbox[self.searched..].contains(&b'\n')
     }
 
-    /// Takes what has come, as far as there is room.
+    /// Reads received bytes, up to the limit of the buffer.
     pub fn read(&mut self) {
         let mut buffer = [0; 4096];
         while !self.has_ended
@@ -118,7 +118,7 @@ impl Client {
         }
     }
 
-    /// The next whole line; none as long as the client leaves answers.
+    /// The next whole line; `None` while the client leaves answers unread.
     pub fn line(&mut self) -> Option<String> {
         if self.is_gone || self.waiting >= ANSWERS_MAX {
             return None;
@@ -138,7 +138,7 @@ impl Client {
         None
     }
 
-    /// Bytes of an answer, or of data.
+    /// Queues bytes of an answer, or of data.
     pub fn send(&mut self, bytes: &[u8]) {
         self.waiting += bytes.len();
         self.is_gone |= self.waiting > DATA_MAX;
@@ -153,7 +153,7 @@ impl Client {
         }
     }
 
-    /// Gives away what the client takes now; drops it if a piece has waited for too long.
+    /// Sends what the client accepts now; drops it if a piece has waited for too long.
     pub fn flush(&mut self) {
         while let Some(piece) = self.outbox.front().filter(|_| !self.is_gone) {
             match self.stream.write(&piece.bytes[self.sent..]) {
@@ -183,7 +183,7 @@ mod tests {
     use super::*;
     use std::net::TcpListener;
 
-    /// A client, and its far end.
+    /// A client, and its remote end.
     fn pair(patience: Duration) -> (Client, TcpStream) {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let far = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
@@ -201,7 +201,7 @@ mod tests {
         lines
     }
 
-    /// Catches a search that begins at the first byte again with every line, and a line that is lost between two reads.
+    /// Catches a search that restarts at the first byte with every line, and a line that is lost between two reads.
     #[test]
     fn a_megabyte_of_lines_is_taken_apart_once_and_in_order() {
         let (mut client, mut far) = pair(PATIENCE);
@@ -216,7 +216,7 @@ mod tests {
         drop(sender.join().unwrap());
     }
 
-    /// Catches answers that are kept without end, and lines that are read though nobody takes their answers.
+    /// Catches an unlimited queue of answers, and lines that are read although the client does not read their answers.
     #[test]
     fn a_client_that_takes_nothing_is_not_read_and_then_dropped() {
         let (mut client, mut far) = pair(Duration::from_millis(200));
@@ -237,7 +237,7 @@ mod tests {
         assert!((ANSWERS_MAX..ANSWERS_MAX + 401).contains(&most), "{most}");
     }
 
-    /// Catches the answers of a client that has sent all that it had to send.
+    /// Catches lost answers for a client that has stopped sending.
     #[test]
     fn a_client_that_sends_nothing_more_has_its_answers() {
         let (mut client, mut far) = pair(PATIENCE);

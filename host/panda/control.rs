@@ -1,10 +1,10 @@
-//! The control port: questions about blocks and fields, arming.
+//! The control port: queries of blocks and fields, arming.
 
 use super::data::clean;
 use super::Column;
 use std::collections::BTreeMap;
 
-/// What a command wants of the server.
+/// Action requested by a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wish {
     /// Begin an acquisition.
@@ -13,11 +13,11 @@ pub enum Wish {
     Disarm,
 }
 
-/// What the server knows when it answers.
+/// State of the server for answers.
 pub struct State<'a> {
     /// Program and version.
     pub software: &'a str,
-    /// Which card.
+    /// Name of the card.
     pub card: &'a str,
     /// Columns of the data.
     pub columns: &'a [Column],
@@ -25,9 +25,9 @@ pub struct State<'a> {
     pub latest: Option<&'a [i64]>,
     /// An acquisition is under way.
     pub is_armed: bool,
-    /// How the last one ended.
+    /// End reason of the last acquisition.
     pub completion: &'a str,
-    /// Rows of the last one, or of the one under way.
+    /// Rows of the last or present acquisition.
     pub captured: u64,
 }
 
@@ -43,7 +43,7 @@ const OK: &str = "OK\n";
 /// Type of a number with scale, offset and unit.
 const POSITION: &str = "pos_out";
 
-/// The answer to a line, and what is to be done. Unknown questions get `ERR`.
+/// The answer to a line, and the requested action. Unknown queries get `ERR`.
 pub fn answer(line: &str, state: &State<'_>) -> (String, Option<Wish>) {
     let line = line.trim_end_matches('\r');
     match line {
@@ -53,14 +53,14 @@ pub fn answer(line: &str, state: &State<'_>) -> (String, Option<Wish>) {
     }
     let text = match line.strip_suffix('?') {
         Some(name) => query(name, state),
-        // Tables and settings of other blocks do not exist here.
+        // The card has no tables and no settings of other blocks.
         None => Err("No such field, or it cannot be written"),
     };
     let text = text.unwrap_or_else(|why| format!("ERR {why}: {}\n", clean(line)));
     (text, None)
 }
 
-/// Everything that `*CHANGES` tells of, with its group: name and value.
+/// All values of `*CHANGES`, with group, name and value.
 fn values(state: &State<'_>) -> Vec<(&'static str, String, String)> {
     let mut all = Vec::new();
     for (block, count) in blocks(state.columns) {
@@ -76,7 +76,7 @@ fn values(state: &State<'_>) -> Vec<(&'static str, String, String)> {
         };
         attribute("CAPTURE", "Value".into());
         let field = column.name.rsplit('.').next().unwrap_or_default();
-        // What has a type of its own has no scale that a client could ask for.
+        // Fields with a type of their own have no scale.
         if kind(field) == POSITION {
             attribute("OFFSET", "0".into());
             attribute("SCALE", column.scale.to_string());
@@ -88,11 +88,11 @@ fn values(state: &State<'_>) -> Vec<(&'static str, String, String)> {
     all
 }
 
-/// What a connection has been told of every value.
+/// Values reported to a connection.
 pub type Seen = BTreeMap<String, String>;
 
-/// The answer to `*CHANGES?` and `*CHANGES.GROUP?`: what is new since this connection asked last, at first everything; with `=` in place
-/// of the `?` all is taken as told, with `=E` nothing. None for any other line.
+/// The answer to `*CHANGES?` and `*CHANGES.GROUP?`: the changes since the last query of this connection, at first everything. With `=` instead
+/// of `?` all values count as reported, with `=E` none. `None` for any other line.
 pub fn changes(line: &str, state: &State<'_>, seen: &mut Seen) -> Option<String> {
     let rest = line.trim_end_matches('\r').strip_prefix("*CHANGES")?;
     let at = rest.find(['?', '='])?;
@@ -125,7 +125,7 @@ pub fn changes(line: &str, state: &State<'_>, seen: &mut Seen) -> Option<String>
     })
 }
 
-/// Blocks: name and how many.
+/// Blocks: name and number.
 fn blocks(columns: &[Column]) -> Vec<(&str, usize)> {
     let encoders = columns.iter().filter(|c| c.name.ends_with(".VAL")).count();
     vec![("INENC", encoders), ("PCAP", 1), ("TRIGGER", 1)]
@@ -145,7 +145,7 @@ fn stem(block: &str) -> &str {
     block.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
-/// Fields of a block: those of its first copy.
+/// Fields of a block, from its first copy.
 fn fields<'a>(
     columns: &'a [Column],
     block: &'a str,
@@ -239,7 +239,7 @@ fn field(name: &str, state: &State<'_>) -> Result<String, &'static str> {
     let place = columns
         .iter()
         .position(|c| c.name == format!("{block}.{field}"));
-    // Attributes are asked of the block without a number, too.
+    // Attributes can be queried with the block name without a number, too.
     let of_block = || {
         fields(columns, stem(block))
             .find(|(_, f)| *f == field)
@@ -264,7 +264,7 @@ fn field(name: &str, state: &State<'_>) -> Result<String, &'static str> {
     })
 }
 
-/// Type of a field, as the clients know them.
+/// Type of a field in the protocol.
 fn kind(field: &str) -> &'static str {
     match field {
         "TS_TRIG" => "ext_out timestamp",
@@ -282,7 +282,7 @@ mod tests {
         Column::all(100_000_000, &scales, false)
     }
 
-    /// Catches a server that tells nothing, on which the EPICS driver dies, or tells the same again.
+    /// Catches a server that reports nothing, on which the EPICS driver fails, or repeats unchanged values.
     #[test]
     fn changes_are_everything_at_first_and_then_what_is_new() {
         let columns = columns();

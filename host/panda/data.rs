@@ -5,12 +5,12 @@ use crate::feed::Row;
 use humantime::format_rfc3339_nanos;
 use std::time::SystemTime;
 
-/// Form that a client asked for.
+/// Data format requested by a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {
     /// Binary frames with their length; otherwise lines of text.
     pub is_framed: bool,
-    /// Numbers of 64 bits in floating point, scaled; otherwise integers and the client scales.
+    /// 64-bit floating point, scaled; otherwise integers that the client scales.
     pub is_scaled: bool,
     /// A header comes first.
     pub has_header: bool,
@@ -18,7 +18,7 @@ pub struct Form {
     pub is_xml: bool,
 }
 
-/// The answer to the line that a client sends first.
+/// The answer to the first line of a client.
 pub fn form(line: &str) -> Result<Form, String> {
     let mut form = Form {
         is_framed: false,
@@ -41,13 +41,13 @@ pub fn form(line: &str) -> Result<Form, String> {
     Ok(form)
 }
 
-/// A word that may go back to the client.
+/// A word that is safe to return to the client.
 pub fn clean(word: &str) -> String {
     let graphic = word.chars().filter(char::is_ascii_graphic);
     graphic.take(40).collect()
 }
 
-/// When an acquisition was armed and when its first row came, if one has.
+/// Time of arming, and of the first row if there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Times {
     /// Armed.
@@ -57,7 +57,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// Names and moments, as clients know them.
+    /// Names and times in the format of the protocol.
     fn told(self) -> Vec<(&'static str, String)> {
         let start = self.start.map(|time| ("start_time", time));
         let all = std::iter::once(("arm_time", self.arm)).chain(start);
@@ -66,7 +66,7 @@ impl Times {
     }
 }
 
-/// What goes out when an acquisition begins.
+/// Header of an acquisition.
 pub fn header(form: Form, columns: &[Column], times: Times) -> String {
     if !form.has_header {
         return String::new();
@@ -107,7 +107,7 @@ pub fn header(form: Form, columns: &[Column], times: Times) -> String {
     )
 }
 
-/// Rows as they go out.
+/// Rows in the requested format.
 pub fn rows(form: Form, columns: &[Column], rows: &[Row]) -> Vec<u8> {
     if !form.is_framed {
         let line = |row: &Row| {

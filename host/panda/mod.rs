@@ -1,7 +1,7 @@
-//! The TCP protocol of PandABlocks, as far as its clients need it to find, arm and record a card.
+//! The TCP protocol of PandABlocks, as far as clients need it to find, arm and record a card.
 //!
 //! ```text
-//! control port   *IDN?  *BLOCKS?  *DESC.X?  X.*?  *CAPTURE?  *PCAP.ARM=  *PCAP.DISARM= ...     one line, or lines behind '!'
+//! control port   *IDN?  *BLOCKS?  *DESC.X?  X.*?  *CAPTURE?  *PCAP.ARM=  *PCAP.DISARM= ...     one line, or lines after '!'
 //! data port      XML FRAMED RAW -> OK, <header>, BIN <length> <samples> ..., END <count> <reason>
 //! ```
 //!
@@ -23,9 +23,9 @@ use crate::units::Scale;
 pub struct Column {
     /// Name, as `BLOCK.FIELD`.
     pub name: String,
-    /// What a raw number is multiplied with.
+    /// Factor of a raw number.
     pub scale: f64,
-    /// Unit after that.
+    /// Unit of the scaled number.
     pub unit: &'static str,
     /// One sentence.
     pub meaning: &'static str,
@@ -42,7 +42,7 @@ enum What {
     Info(usize, usize),
 }
 
-/// What a feed says instead of a cause, behind the causes of two protocols.
+/// Texts of a feed instead of a cause, after the causes of the protocols.
 const OF_ROWS: [&str; 3] = [NOT_TAKEN, TOO_LATE, LATE];
 const OF_ROWS_FIRST: usize = 2 * causes::CODES as usize;
 
@@ -55,14 +55,14 @@ fn code(cause: &str) -> i64 {
 }
 
 impl Column {
-    /// The columns of a card; `additional_data`: its rows have them.
+    /// The columns of a card; `additional_data` adds the columns for these.
     pub fn all(system_hz: u32, scales: &[Scale], additional_data: bool) -> Vec<Self> {
         let mut columns = vec![
             Self {
                 name: "PCAP.TS_TRIG".into(),
                 scale: 1.0 / f64::from(system_hz.max(1)),
                 unit: "s",
-                meaning: "Moment of the trigger since the first one of the acquisition, in the card's clock",
+                meaning: "Time of the trigger since the first one of the acquisition, in the card's clock",
                 what: What::Time,
             },
             Self {
@@ -77,7 +77,7 @@ impl Column {
             let one = scale.convert(1);
             columns.push(Self {
                 name: format!("INENC{}.VAL", channel + 1),
-                // Whole turns stay in the number.
+                // The number includes whole turns.
                 scale: scale.step(),
                 unit: one.unit,
                 meaning: "Last good position",
@@ -95,7 +95,7 @@ impl Column {
                 name: format!("INENC{}.CAUSE", channel + 1),
                 scale: 1.0,
                 unit: "",
-                meaning: "Why it did not, as in the register map, 0 = none; 32: trigger not taken, 33: result too late, 34: the late result of an earlier trigger",
+                meaning: "Cause of a missing position, as in the register map, 0 = none; 32: trigger not taken, 33: result too late, 34: the late result of an earlier trigger",
                 what: What::Cause(channel),
             });
             let infos = if additional_data { 2 } else { 0 };
@@ -103,7 +103,7 @@ impl Column {
                 name: format!("INENC{}.INFO{}", channel + 1, info + 1),
                 scale: 1.0,
                 unit: "",
-                meaning: "Additional data of the same frame: bits 23..16 WRN, RM, Busy, I4..I0, bits 15..0 what they say; -1: none came with a right CRC",
+                meaning: "Additional data of the same frame: bits 23..16 WRN, RM, Busy, I4..I0, bits 15..0 content; -1: none received with a right CRC",
                 what: What::Info(channel, info),
             }));
         }

@@ -11,32 +11,32 @@ use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::time::{Duration, Instant, SystemTime};
 
-/// Port that clients send commands to.
+/// Port for commands of clients.
 pub const CONTROL_PORT: u16 = 8888;
-/// Port that clients read data from.
+/// Port for data to clients.
 pub const DATA_PORT: u16 = 8889;
 
-/// Lines are answered for so long at a time: then rows of the card have their turn.
+/// Longest time for answering lines before rows of the card are handled.
 const TURN: Duration = Duration::from_millis(20);
-/// Connections to a port. Of more than that the one is closed that has been silent for the longest.
+/// Most connections to a port. If there are more, the one that has been silent for the longest is closed.
 const CONNECTIONS: usize = 256;
-/// Lines of a data client that are answered at a time; it needs one.
+/// Most lines of a data client that are answered at a time; it needs one.
 const FORMS: usize = 16;
-/// Bytes that a data client may leave before a card waits that can.
+/// Most unread bytes of a data client before a card that can wait does.
 const BEHIND: usize = 1 << 20;
-/// How long the ends of acquisitions may take to go out when the server ends.
+/// Time limit for sending the ends of acquisitions when the server ends.
 const FAREWELL: Duration = Duration::from_secs(1);
-/// Wait for rows, and so for anything else.
+/// Waiting time for rows in one loop of the server.
 const SLICE: Duration = Duration::from_millis(10);
 
-/// Where the server listens.
+/// Listening ports of the server.
 pub struct Ports {
     control: TcpListener,
     data: TcpListener,
 }
 
 impl Ports {
-    /// Listens on both ports of an address; 0 takes a free one.
+    /// Listens on both ports of an address; 0 selects a free one.
     pub fn open(host: &str, control: u16, data: u16) -> io::Result<Self> {
         let open = |port| {
             let listener = TcpListener::bind((host, port))?;
@@ -58,12 +58,12 @@ impl Ports {
 struct DataClient {
     client: Client,
     form: Option<data::Form>,
-    /// It has the header of the acquisition under way.
+    /// The client has the header of the acquisition under way.
     is_recording: bool,
 }
 
 impl DataClient {
-    /// The form that it asks for.
+    /// Processes the requested format.
     fn answer(&mut self, line: &str) {
         let answer = match data::form(line) {
             Ok(form) => {
@@ -82,20 +82,20 @@ struct Acquisition {
     times: Times,
 }
 
-/// A card behind the two ports.
+/// A card with the two ports.
 pub struct Server<'c, T> {
     card: &'c mut Card<T>,
     columns: Vec<Column>,
     ports: Ports,
     controls: Vec<Client>,
-    /// Whose line was answered last.
+    /// Client whose line was answered last.
     turn: usize,
     datas: Vec<DataClient>,
     patience: Duration,
-    /// The card waits for clients that are behind.
+    /// The card waits for slow clients.
     waits: bool,
     acquisition: Option<Acquisition>,
-    /// An acquisition ends by itself after so many rows.
+    /// An acquisition ends automatically after this many rows.
     limit: Option<u64>,
     latest: Option<Vec<i64>>,
     completion: &'static str,
@@ -127,17 +127,17 @@ impl<'c, T: Transport> Server<'c, T> {
         }
     }
 
-    /// Drops a client for which a byte has waited this long [5 s].
+    /// Sets the time after which a client with a waiting byte is dropped [5 s].
     pub fn set_patience(&mut self, patience: Duration) {
         self.patience = patience;
     }
 
-    /// The card's time goes on only while it is asked, so that it waits for clients that are behind, and no row is lost.
+    /// The card's time advances only when it is polled, so it waits for slow clients, and no row is lost.
     pub fn set_waits(&mut self) {
         self.waits = true;
     }
 
-    /// Serves until `stop` says so.
+    /// Serves until `stop` returns true.
     pub fn run(&mut self, mut stop: impl FnMut() -> bool) -> Result<(), HostError> {
         while !stop() {
             let began = Instant::now();
@@ -162,7 +162,7 @@ impl<'c, T: Transport> Server<'c, T> {
 
     fn listen(&mut self) {
         self.controls.retain(|c| !c.is_gone() && !c.is_served());
-        // One that has left reads as one that sends nothing more, and it has nothing more to send.
+        // A client that has left reads as one that sends nothing more, and has no data to receive.
         (self.datas).retain(|d| !d.client.is_gone() && !d.client.has_ended());
         while let Ok((stream, _)) = self.ports.control.accept() {
             if self.controls.len() >= CONNECTIONS {
@@ -176,7 +176,7 @@ impl<'c, T: Transport> Server<'c, T> {
         while let Ok((stream, _)) = self.ports.data.accept() {
             if self.datas.len() >= CONNECTIONS {
                 let heard = self.datas.iter().enumerate();
-                // Who records has nothing to say for hours.
+                // A recording client may be silent for hours.
                 let heard = heard.map(|(n, d)| (n, (d.is_recording, d.client.heard())));
                 if let Some((place, _)) = heard.min_by_key(|(_, order)| *order) {
                     self.datas.swap_remove(place);
@@ -191,7 +191,7 @@ impl<'c, T: Transport> Server<'c, T> {
         }
     }
 
-    /// Answers a line of each client in turn, until there are no more or the time is over; those that are left come next time.
+    /// Answers a line of each client in turn, until no lines are left or the time is over; the rest follow next time.
     fn answer_controls(&mut self) -> Result<(), HostError> {
         let end = Instant::now() + TURN;
         self.controls.iter_mut().for_each(Client::read);
@@ -213,7 +213,7 @@ impl<'c, T: Transport> Server<'c, T> {
         Ok(())
     }
 
-    /// Answers a line; whether the card was asked for something, which takes its time.
+    /// Answers a line; returns true if this accessed the card, which takes time.
     fn answer(&mut self, index: usize, line: &str) -> Result<bool, HostError> {
         let card = format!("{:08x}", self.card.identity().configuration_hash);
         let state = State {
@@ -258,7 +258,7 @@ impl<'c, T: Transport> Server<'c, T> {
                 each.answer(&line);
             }
         }
-        // A client that comes late gets what is left.
+        // A late client gets the remaining rows.
         let times = self.acquisition.as_ref().map(|a| a.times);
         if let Some(times) = times.filter(|times| times.start.is_some()) {
             self.send_headers(times);
@@ -266,13 +266,13 @@ impl<'c, T: Transport> Server<'c, T> {
         self.datas.iter_mut().for_each(|d| d.client.flush());
     }
 
-    /// Whether the card waits for a client.
+    /// True if the card waits for a client.
     fn is_behind(&self) -> bool {
         let mut recording = self.datas.iter().filter(|d| d.is_recording);
         self.waits && recording.any(|d| !d.client.is_gone() && d.client.waiting() > BEHIND)
     }
 
-    /// Begins the acquisition for those who have asked for data and do not have its header.
+    /// Begins the acquisition for clients that have requested data and do not have its header.
     fn send_headers(&mut self, times: Times) {
         for each in self.datas.iter_mut().filter(|d| !d.is_recording) {
             if let Some(form) = each.form {
@@ -295,7 +295,7 @@ impl<'c, T: Transport> Server<'c, T> {
             times,
         });
         self.captured = 0;
-        // Who is connected has every row.
+        // Every connected client gets every row.
         self.answer_datas();
         Ok(())
     }
@@ -305,7 +305,7 @@ impl<'c, T: Transport> Server<'c, T> {
             return Ok(());
         };
         let mut queue = VecDeque::new();
-        // What has come meanwhile, and not only the first piece of it: else a card that sends much falls behind where clients ask much.
+        // Read everything received so far, not only the first piece: otherwise a fast card falls behind when clients send many queries.
         let end = Instant::now() + TURN;
         let (mut wait, mut before) = (SLICE, 0);
         loop {
@@ -315,9 +315,9 @@ impl<'c, T: Transport> Server<'c, T> {
             }
             (wait, before) = (Duration::ZERO, queue.len());
         }
-        // A row of PandABlocks is a trigger's.
+        // A row of PandABlocks belongs to a trigger.
         let mut rows: Vec<Row> = queue.into_iter().filter(|r| r.run.is_none()).collect();
-        // Rows behind a gap do not belong to this acquisition.
+        // Rows after a gap do not belong to this acquisition.
         let gap = rows
             .iter()
             .position(|r| acquisition.feed.streams() && r.missing > 0);
@@ -352,7 +352,7 @@ impl<'c, T: Transport> Server<'c, T> {
             return Ok(());
         };
         self.completion = reason;
-        // Also without a row a begin belongs to each end.
+        // Every end needs a begin, even without a row.
         self.send_headers(acquisition.times);
         for each in self.datas.iter_mut().filter(|d| d.is_recording) {
             each.client

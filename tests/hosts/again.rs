@@ -459,7 +459,7 @@ fn a_restart_is_seen_by_more_than_its_count() {
     *inside.borrow_mut() = begun_anew;
     let told = fill().unwrap_err().to_string();
     assert!(
-        told.contains("what was left in card_config.hold.scratch is gone"),
+        told.contains("the mark in card_config.hold.scratch is gone"),
         "{told}"
     );
 }

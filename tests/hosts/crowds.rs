@@ -346,7 +346,7 @@ fn a_second_program_is_told_that_the_card_is_in_use() {
     let begin = format!("{}: in use by another connection for ", card.name);
     assert!(told.starts_with(&begin), "{told}");
     assert!(
-        told.ends_with(" s; end the program that has it, or try again when it has ended"),
+        told.ends_with(" s; end the program that uses it, or try again later"),
         "{told}"
     );
     // Any other program can read it, too.

@@ -263,7 +263,7 @@ fn reg_write_keeps_to_the_limits_of_the_map_unless_forced() {
     assert_eq!(write("card.calibrate", "3", &[]).exit_code, 0);
     let foreign = run(&["reg", "read", "nosuch", "--port", "virtual"]);
     let told = &foreign.messages[0];
-    let begin = "register = \"nosuch\": there is no block \"nosuch\" (";
+    let begin = "register = \"nosuch\": no block is called \"nosuch\" (";
     // The card has no services and no T-format channel.
     assert!(
         told.starts_with(begin) && told.contains("config0"),

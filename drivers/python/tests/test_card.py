@@ -204,7 +204,7 @@ def test_t_format_turns_are_counted_on_with_the_bits_of_a_turn() -> None:
     turns, steps = raw >> np.uint64(24), raw & np.uint64(0x1FFFF)
     crossing = replace(one, raw=raw, turns=turns, position=steps * 360 / (1 << 17), fresh=np.ones(3, dtype=np.bool_))
     np.testing.assert_allclose(np.diff(crossing.unwrapped()) * (1 << 17) / 360, [787, -787], atol=1e-6)
-    with pytest.raises(endat.BadInput, match="range = 5: there is no channel"):
+    with pytest.raises(endat.BadInput, match="range = 5: the card has no such channel"):
         endat.connect("virtual:mixed_protocols", ranges={5: "17+16"})
 
 
@@ -259,7 +259,7 @@ def test_causes_have_names_and_advice() -> None:
     assert endat.CAUSES[0] == "none" and "crc" in endat.CAUSES.values()
     code = next(code for code, name in endat.CAUSES.items() if name == "crc")
     assert endat.explain(code) == endat.explain("crc")
-    assert "CRC" in endat.explain("crc") and "quiet for 30 ms" in endat.explain("not_taken")
+    assert "CRC" in endat.explain("crc") and "pauses for 30 ms" in endat.explain("not_taken")
     for name in set(endat.CAUSES.values()) - {"none", "unknown"}:
         assert endat.explain(name)
     one = replace(channel([1], [True], [0], None), cause=np.array([77], dtype=np.uint8))
