@@ -248,7 +248,10 @@ fn what_counts_turns_is_refused_until_somebody_says_what_a_turn_is() {
     let read = good(&["read", "--port", &port, "--range", "0=17+16"]);
     assert!(read.contains(" deg + 100 turns"), "{read}");
     let told = bad(&["read", "--port", &port, "--range", "2=17"], 2);
-    assert!(told.contains("--range = 2: the card has no such channel"), "{told}");
+    assert!(
+        told.contains("--range = 2: the card has no such channel"),
+        "{told}"
+    );
     let told = bad(&["read", "--port", &port, "--range", "1=12+13"], 2);
     assert!(
         told.contains("--range = 1=12+13: is 25 bits, and positions of the channel have 17"),

@@ -1,4 +1,4 @@
-"""The package against simulated cards: in this process, and as a program of its own behind TCP."""
+"""The package with simulated cards: in this process, and as a separate program over TCP."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_every_trigger_has_a_row(card: endat.Card) -> None:
     for one in samples.channels:
         assert one.fresh.all() and (one.cause_names() == "none").all()
         assert np.allclose(one.position, one.raw * (360 / 2**BITS))
-        # It turns, evenly but for a slow swing.
+        # It turns evenly, except for a slow swing.
         steps = np.diff(one.unwrapped())
         assert (steps > 0).all() and steps.max() < 2 * steps.min()
     assert not np.array_equal(samples.channels[0].raw, samples.channels[1].raw)
@@ -68,10 +68,10 @@ def test_seconds_are_those_of_the_card(card: endat.Card) -> None:
 
 def test_a_stream_comes_in_blocks_and_leaves_the_card_usable(card: endat.Card) -> None:
     with closing(card.stream(block=40)) as blocks:
-        # Fewer on a machine that is slow: a block comes twice a second at least.
+        # Fewer on a slow machine: a block comes at least twice a second.
         one = next(blocks)
         assert 0 < len(one) <= 40
-        # Registers are read meanwhile, and nothing is lost for it.
+        # Reading registers meanwhile loses no rows.
         assert card.read_register("config0.frame.position_bits") == BITS
         with pytest.raises(endat.Refused, match="under way"):
             next(card.stream())
@@ -114,7 +114,7 @@ def test_parameters_and_mode_commands_reach_the_encoder(card: endat.Card) -> Non
 def test_registers_are_written_by_name_and_within_their_limits(card: endat.Card) -> None:
     name = "card_config.trigger_period.value"
     period = card.read_register(name)
-    # While the timer stands, as the map asks for: a shorter one would begin when its counter has been round.
+    # While the timer is stopped, as the map requires: a shorter period would start only after its counter has wrapped.
     timer = "card_config.trigger_sources.timer"
     for cycles, seconds in ((period * 2, 4e-4), (period, 2e-4)):
         card.write_register(timer, 0)
@@ -246,7 +246,7 @@ def test_unwrapping_counts_turns_and_skips_what_is_held() -> None:
     np.testing.assert_array_equal(single.unwrapped(), [350, 355, np.nan, 362, 358])
     multi = channel([350, 10, 10], [True] * 3, [4, 5, 9], 360, 4096)
     np.testing.assert_array_equal(multi.unwrapped(), [1790, 1810, 3250])
-    # Over the last of all turns that are told apart, and back.
+    # Over the last of all counted turns, and back.
     ends = channel([350, 10, 350], [True] * 3, [4095, 0, 4095], 360, 4096)
     np.testing.assert_array_equal(np.diff(ends.unwrapped()), [20, -20])
     linear = channel([1.5, 900, 3], [True] * 3, [0] * 3, None)
@@ -294,7 +294,7 @@ def test_a_recording_says_what_was_measured(card: endat.Card, tmp_path: Path) ->
 def test_rows_are_written_once_however_blocks_and_chunks_meet(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, chunk: int, latest_s: float
 ) -> None:
-    """Catches rows that are lost or written twice where a block goes over the end of a chunk, or is written for its age."""
+    """Catches rows that are lost or written twice if a block crosses the end of a chunk, or is written because of its age."""
     h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
     monkeypatch.setattr("endat.recording.CHUNK", chunk)
     monkeypatch.setattr("endat.recording.LATEST_S", latest_s)
@@ -327,14 +327,14 @@ print(seen[0], resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is told in kB there")
 @pytest.mark.parametrize("rows", [300_000, pytest.param(HOUR, marks=pytest.mark.slow)])
 def test_an_hour_is_below_300_megabytes_and_whole(tmp_path: Path, rows: int) -> None:
-    """Catches a file that grows beyond what was promised, a row that is lost, and memory that holds the rows."""
+    """Catches a file larger than documented, a lost row, and rows kept in memory."""
     h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
     path = tmp_path / "hour.h5"
     told = subprocess.run([sys.executable, "-c", HOUR_OF_ROWS, str(path), str(rows)], capture_output=True, text=True, check=True)
     before, peak, seconds = told.stdout.split()
     megabytes = path.stat().st_size * HOUR / rows / 1e6
     print(f"{rows} rows: {before} kB before, {peak} kB at most, {seconds} s of CPU, {megabytes:.0f} MB an hour")
-    # However many rows they are.
+    # For any number of rows.
     assert int(peak) - int(before) < 25_000, f"{before} kB, then {peak} kB"
     assert megabytes < 300, f"{megabytes:.0f} MB"
     with h5py.File(path) as file:
@@ -347,7 +347,7 @@ def test_an_hour_is_below_300_megabytes_and_whole(tmp_path: Path, rows: int) -> 
         endat.record(card, without, 1000, raw=False)
     with h5py.File(without) as file:
         one = file["channel1"]
-        # The positions tell what the encoder sent, each step of it.
+        # The positions contain each step of the encoder.
         steps = one["position"][:] * (2**BITS / 360)
         assert "raw" not in one and np.all(steps == np.round(steps)) and np.any(steps)
 
@@ -361,7 +361,7 @@ with endat.connect("load") as card:
 
 @pytest.mark.skipif(os.name != "posix", reason="SIGKILL is sent as POSIX does")
 def test_a_recording_that_is_killed_is_whole(tmp_path: Path) -> None:
-    """Catches rows that nobody wrote out, and columns that end at different rows."""
+    """Catches rows that were not written, and columns that end at different rows."""
     h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
     path = tmp_path / "killed.h5"
     program = subprocess.Popen([sys.executable, "-c", KILLED, str(path)])
@@ -411,7 +411,7 @@ def test_calls_of_several_threads_take_turns(card: endat.Card) -> None:
 
 @pytest.fixture
 def served(service_file: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
-    """A card in a process of its own: it has a time of its own, too. Slow, so that this machine keeps up."""
+    """A card in a separate process, with its own time. Slow, so that this machine keeps up."""
     program = subprocess.Popen(
         [os.environ["ENDAT_GEN"], "card", "--config", str(service_file), "--tcp", "127.0.0.1:0"],
         stdout=subprocess.PIPE,
@@ -424,7 +424,7 @@ def served(service_file: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
         if found:
             break
     else:
-        raise AssertionError("the card has not said its port")
+        raise AssertionError("the card has not printed its port")
     threading.Thread(target=program.stdout.read, daemon=True).start()
     yield found[0], program
     program.kill()
@@ -434,7 +434,7 @@ def served(service_file: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
 def test_a_program_that_is_busy_loses_nothing(served: tuple[str, subprocess.Popen[str]]) -> None:
     with endat.connect(served[0]) as card, closing(card.stream(block=50)) as blocks:
         first = next(blocks)
-        # Longer than the buffers of the card hold.
+        # Longer than the card's buffers last.
         time.sleep(3)
         rest = [next(blocks) for _ in range(10)]
         samples = endat.Samples.concatenate([first, *rest])
