@@ -1,6 +1,6 @@
-//! Numbers for people and tools.
+//! Formatting of numbers.
 
-/// A number with at most so many decimals, without needless zeros.
+/// A number with at most `digits` decimals, without trailing zeros.
 pub fn decimal(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = match text.contains('.') {

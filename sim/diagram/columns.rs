@@ -1,15 +1,15 @@
-//! Numbers over time in as many columns as a drawing has, however many there are and however long it takes.
+//! Values over time, reduced to the number of columns of a drawing, for any number of values and any duration.
 
-/// Most columns; when there would be more, two and two become one. There are at least half as many.
+/// Most columns; above this, pairs are merged, so at least half as many remain.
 pub(super) const COLUMNS_MAX: usize = 1640;
 
-/// What a column holds, and how two become one.
+/// Content of a column, and its merging.
 pub trait Column: Clone + Default {
-    /// Takes what the next column has.
+    /// Adds the content of the next column.
     fn join(&mut self, next: &Self);
 }
 
-/// Columns of the same length of time, from the first moment on.
+/// Columns of equal duration, from the first time on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns<T> {
     first_s: Option<f64>,
@@ -18,12 +18,12 @@ pub struct Columns<T> {
 }
 
 impl<T: Column> Columns<T> {
-    /// The column of a moment. One before the first lies in the first.
+    /// The column of a time. Earlier times belong to the first column.
     pub fn at(&mut self, time_s: f64) -> &mut T {
         let first = *self.first_s.get_or_insert(time_s);
         let since = (time_s - first).max(0.0);
         if self.width_s == 0.0 && since > 0.0 {
-            // Narrow enough that what comes as fast as this has columns of its own.
+            // Narrow enough for separate columns at this rate.
             self.width_s = since / 2.0;
         }
         let place = loop {
@@ -42,7 +42,7 @@ impl<T: Column> Columns<T> {
         &mut self.all[place]
     }
 
-    /// Others of the same moments, with nothing in them.
+    /// Empty columns of the same times.
     pub(super) fn like<U: Column>(&self) -> Columns<U> {
         Columns {
             first_s: self.first_s,
@@ -51,7 +51,7 @@ impl<T: Column> Columns<T> {
         }
     }
 
-    /// How long a row lasts, or two columns if that is longer.
+    /// Duration of a row, or of two columns if longer.
     pub(super) fn row_s(&self) -> f64 {
         2.0 * self.width_s
     }
@@ -66,7 +66,7 @@ impl<T: Column> Columns<T> {
         self.width_s *= 2.0;
     }
 
-    /// The middle of each column, and what is in it.
+    /// The middle of each column, and its content.
     pub fn iter(&self) -> impl Iterator<Item = (f64, &T)> + '_ {
         let first = self.first_s.unwrap_or(0.0);
         let middle = move |n: usize| first + self.width_s * (n as f64 + 0.5);
@@ -80,14 +80,14 @@ impl<T: Column> Columns<T> {
 /// The numbers of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
-    /// Moments and values of the first and the last one.
+    /// Times and values of the first and the last value.
     pub(super) ends: Option<[(f64, f64); 2]>,
-    /// Least and greatest.
+    /// Minimum and maximum.
     pub(super) least: f64,
     pub(super) greatest: f64,
-    /// There is a gap before the first, between two, or behind the last.
+    /// Gaps before the first value, between two values, and after the last.
     pub(super) gaps: [bool; 3],
-    /// How many should be there and are not.
+    /// Number of missing values.
     pub(super) bad: u64,
 }
 
@@ -104,7 +104,7 @@ impl Default for Extremes {
 }
 
 impl Extremes {
-    /// Takes a value, or that there is none.
+    /// Adds a value, or a gap.
     pub(super) fn take(&mut self, time_s: f64, value: Option<f64>) {
         let next = match value {
             Some(value) => Self {
@@ -147,7 +147,7 @@ impl Column for Extremes {
     }
 }
 
-/// How many, in a column.
+/// Number of events in a column.
 impl Column for u64 {
     fn join(&mut self, next: &Self) {
         *self += next;
@@ -158,7 +158,7 @@ impl Column for u64 {
 mod tests {
     use super::*;
 
-    /// Catches a decimation that takes every nth value, and one whose memory grows.
+    /// Catches a decimation that keeps every nth value, and unlimited memory.
     #[test]
     fn one_value_of_a_million_is_in_the_columns() {
         let mut all: Columns<Extremes> = Columns::default();
@@ -191,7 +191,7 @@ mod tests {
         }
         let counts: Vec<u64> = all.iter().map(|c| *c.1).filter(|n| *n > 0).collect();
         assert_eq!(counts, [3, 1]);
-        // What happens seldom is as exact in time.
+        // Rare events have the same time resolution.
         let mut seldom: Columns<u64> = Columns::default();
         (0..1_000).for_each(|n| *seldom.at(f64::from(n)) += 0);
         let mut seldom: Columns<u64> = seldom.like();
@@ -199,7 +199,7 @@ mod tests {
         *seldom.at(900.0) += 1;
         let times = seldom.iter().filter(|c| *c.1 > 0).map(|c| c.0.floor());
         assert_eq!(times.collect::<Vec<_>>(), [100.0, 900.0]);
-        // Before the first, as positions of a running clock may be.
+        // Before the first, as for positions of a running clock.
         *all.at(-1.0) += 1;
         assert_eq!(all.iter().next().map(|c| *c.1), Some(4));
     }

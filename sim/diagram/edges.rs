@@ -1,27 +1,27 @@
-//! The histogram of the edges of DATA that a card has measured, and the margin that it leaves.
+//! The histogram of DATA edges measured by a card, and the timing margin.
 
 use std::fmt;
 
-/// What a card's line monitor says.
+/// Data of a card's line monitor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edges {
-    /// Edges in each bin, the earliest first; the first and the last one hold what is beyond them, too.
+    /// Edges in each bin, the earliest first; the first and the last bin include all edges beyond.
     pub bins: Vec<u32>,
-    /// Width of a bin in places (a place is where DATA is looked at).
+    /// Width of a bin in places (a place is one sampling time of DATA).
     pub places_per_bin: u32,
     /// From an edge's expected place to the sample, in places.
     pub half_bit_places: f64,
-    /// A place in nanoseconds.
+    /// Duration of a place in nanoseconds.
     pub place_ns: f64,
-    /// Earliest and latest edge, in places from where it is expected; none if there were no edges.
+    /// Earliest and latest edge, in places from the expected place; `None` without edges.
     pub extremes: Option<(i8, i8)>,
     /// Frames that were counted.
     pub frames: u32,
-    /// Those of them that had a cause.
+    /// Frames among them with a cause.
     pub bad_frames: u32,
     /// Pulses that the input filter has removed.
     pub glitches: u32,
-    /// How far the line delay has gone from its reference.
+    /// Drift of the line delay from its reference.
     pub drift_ns: f64,
     /// The line delay.
     pub delay_ns: f64,
@@ -33,12 +33,12 @@ impl Edges {
         self.bins.len() / 2
     }
 
-    /// Where a bin begins, in places from where an edge is expected.
+    /// Start of a bin, in places from the expected place of an edge.
     pub(super) fn places_of(&self, bin: usize) -> f64 {
         (bin as f64 - self.middle() as f64) * f64::from(self.places_per_bin)
     }
 
-    /// From the sample to the nearest edge; none if there were no edges.
+    /// Time from the sample to the nearest edge; `None` without edges.
     pub fn margin_ns(&self) -> Option<f64> {
         let (earliest, latest) = self.extremes?;
         // Offset n is from n to n + 1 places after the expected one.

@@ -31,13 +31,13 @@ pub fn edges_svg(edges: &Edges, title: &str) -> String {
     svg.text(24.0, 76.0, Anchor::Start, "mark", &edges.told());
     let per_bin = f64::from(edges.places_per_bin);
     let x = |places: f64| LEFT + BIN * (edges.middle() as f64 + places / per_bin);
-    // What lies beyond the samples belongs to another bit.
+    // Edges beyond the samples belong to other bits.
     let half = edges.half_bit_places;
     if x(half) <= right {
         svg.rect(LEFT, TOP, (x(-half) - LEFT).max(0.0), HEIGHT, "far");
         svg.rect(x(half), TOP, right - x(half), HEIGHT, "far");
     }
-    // Some room above the highest.
+    // Some space above the maximum.
     let most = 1.08 * f64::from(edges.bins.iter().copied().max().unwrap_or(0).max(1));
     let (counts, _) = ticks(0.0, most);
     for count in counts {

@@ -1,26 +1,26 @@
-//! The eye of DATA over two bits, out of the histogram of its edges: what of a bit no edge has ever come into.
+//! The eye of DATA over two bits, from the histogram of its edges: the part of a bit without edges.
 
 use super::edges::Edges;
 use super::svg::{Anchor, Svg};
 
-/// Classes of what is drawn here.
+/// Style classes of this drawing.
 pub const STYLE: &str = "\
 .rail{stroke:#2171b5;stroke-width:2.4}.slope0{fill:#2171b5;fill-opacity:.06}.slope1{fill:#2171b5;fill-opacity:.13}\
 .slope2{fill:#2171b5;fill-opacity:.24}.slope3{fill:#2171b5;fill-opacity:.42}.open{fill:#ecfdf5}";
 
-/// Shades of slopes, from those of few edges to those of many.
+/// Shades of slopes, from few edges to many.
 const SHADES: f64 = 4.0;
-/// Slopes are drawn so wide, as a part of a bit: only where they begin is measured.
+/// Width of drawn slopes, as a part of a bit: only their start is measured.
 const SLOPE: f64 = 0.05;
-/// Height of the eye, and room above it.
+/// Height of the eye, and the space above it.
 pub const HEIGHT: f64 = 130.0;
 pub const ABOVE: f64 = 44.0;
 
-/// Draws it from `left` to `right` below `top`; `HEIGHT + ABOVE` and an axis of 40 below it are taken.
+/// Draws it from `left` to `right` below `top`; uses `HEIGHT + ABOVE` and 40 for the axis.
 pub fn draw(svg: &mut Svg, edges: &Edges, left: f64, right: f64, top: f64) {
     let bit = 2.0 * edges.half_bit_places;
     let (high, low) = (top + ABOVE, top + ABOVE + HEIGHT);
-    // From one bit before the sample to one behind it.
+    // From one bit before the sample to one after it.
     let x = |places: f64| left + (right - left) * (places / bit + 0.5) / 2.0;
     let within = |at: f64| at.clamp(left, right);
     svg.text(
@@ -39,7 +39,7 @@ pub fn draw(svg: &mut Svg, edges: &Edges, left: f64, right: f64, top: f64) {
     let most = f64::from(edges.bins.iter().copied().max().unwrap_or(0).max(1));
     let slope = SLOPE * bit / 2.0;
     for (bin, count) in edges.bins.iter().enumerate().filter(|(_, c)| **c > 0) {
-        // Few edges are seen, too: the shades are those of a logarithm.
+        // Logarithmic shades, so that few edges are visible, too.
         let part = (1.0 + f64::from(*count)).ln() / (1.0 + most).ln();
         let class = format!("slope{}", (part * (SHADES - 0.01)).floor());
         let from = edges.places_of(bin);

@@ -1,16 +1,16 @@
-//! Draws numbers over time, one panel for each series, and below them a lane for each thing that happened.
+//! Draws values over time, one panel for each series, and below them a lane for each kind of event.
 
 use super::columns::{Columns, Extremes};
 use super::svg::{text_width, Anchor, Svg};
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-/// Numbers over time.
+/// Values over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
-    /// What they are.
+    /// Name.
     pub name: String,
-    /// Their unit.
+    /// Unit.
     pub unit: String,
     values: Columns<Extremes>,
     bad_count: u64,
@@ -18,7 +18,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// None yet.
+    /// An empty series.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -27,26 +27,26 @@ impl Series {
         }
     }
 
-    /// Takes a value, or that there is none: a gap.
+    /// Adds a value, or a gap.
     pub fn push(&mut self, time_s: f64, value: Option<f64>) {
         self.values.at(time_s).take(time_s, value);
         self.last_s = Some(time_s);
     }
 
-    /// Nothing was measured before what comes next.
+    /// Adds a gap before the next value.
     pub fn gap(&mut self) {
         if let Some(time_s) = self.last_s {
             self.values.at(time_s).take(time_s, None);
         }
     }
 
-    /// There should have been a value: marked at the foot of the panel, never thinned out.
+    /// Notes a missing value: marked at the bottom of the panel, never thinned out.
     pub fn mark(&mut self, time_s: f64) {
         self.values.at(time_s).bad += 1;
         self.bad_count += 1;
     }
 
-    /// A lane below it, of the same moments.
+    /// A lane below it, with the same times.
     pub fn lane(&self, name: impl Into<String>) -> Lane {
         Lane {
             name: name.into(),
@@ -55,7 +55,7 @@ impl Series {
         }
     }
 
-    /// Least and greatest value.
+    /// Minimum and maximum.
     fn range(&self) -> Option<(f64, f64)> {
         let all = self.values.iter().filter(|c| c.1.ends.is_some());
         range(all.flat_map(|c| [c.1.least, c.1.greatest]))
@@ -69,7 +69,7 @@ impl Series {
             .chain(self.last_s)
     }
 
-    /// Lines without the gaps, as (seconds, value): each column from its first value over its extremes to its last.
+    /// Lines between gaps, as (seconds, value): each column from its first value over its extremes to its last.
     fn lines(&self) -> Vec<Vec<(f64, f64)>> {
         let mut lines = vec![Vec::new()];
         let mut is_broken = false;
@@ -79,7 +79,7 @@ impl Series {
                 if is_broken || before {
                     lines.push(Vec::new());
                 }
-                let line = lines.last_mut().expect("one is there");
+                let line = lines.last_mut().expect("a line exists");
                 line.push(first);
                 let is_flat = column.least == column.greatest;
                 if !is_flat {
@@ -90,10 +90,10 @@ impl Series {
                     }
                 }
                 if between {
-                    // What is in the column is shown, and that it does not hang together.
+                    // Draw the column's content, and interrupt the line.
                     lines.push(Vec::new());
                 }
-                let line = lines.last_mut().expect("one is there");
+                let line = lines.last_mut().expect("a line exists");
                 line.push(last);
                 is_broken = behind;
             } else {
@@ -105,18 +105,18 @@ impl Series {
     }
 }
 
-/// Something that happened at times.
+/// Events over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lane {
-    /// What.
+    /// Name.
     pub name: String,
-    /// How often.
+    /// Number of events.
     pub count: u64,
     times: Columns<u64>,
 }
 
 impl Lane {
-    /// It has happened so often.
+    /// Adds `count` events.
     pub fn push(&mut self, time_s: f64, count: u64) {
         self.count += count;
         *self.times.at(time_s) += count;
@@ -138,17 +138,17 @@ const GAP: f64 = 54.0;
 const COLOURS: usize = 4;
 /// Height of a mark.
 const MARK: f64 = 9.0;
-/// Of a lane, and from one to the next.
+/// Height of a lane, and distance between lanes.
 const LANE: f64 = 12.0;
 const LANE_PITCH: f64 = 20.0;
-/// Widest mark in it.
+/// Widest mark in a lane.
 const LANE_MARK_MAX: f64 = 6.0;
-/// A single value is so wide.
+/// Width of a single value.
 const DOT: f64 = 1.0;
-/// Room above and below the values: part of their range.
+/// Space above and below the values: part of their range.
 const HEADROOM: f64 = 0.08;
 
-/// Lowest and highest of some numbers; a little apart if they are all the same.
+/// Minimum and maximum of some numbers, widened slightly if they are equal.
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
         (low.min(v), high.max(v))
@@ -160,7 +160,7 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     }
 }
 
-/// Steps of 1, 2 or 5 times a power of ten, some five of them.
+/// Steps of 1, 2 or 5 times a power of ten, about five of them.
 pub(super) fn ticks(low: f64, high: f64) -> (Vec<f64>, usize) {
     let rough = (high - low) / 5.0;
     let power = 10f64.powf(rough.log10().floor());
@@ -193,7 +193,7 @@ fn panel(svg: &mut Svg, one: &Series, index: usize, top: f64, x: &dyn Fn(f64) ->
     let (low, high) = (low - room, high + room);
     let y = |value: f64| bottom - HEIGHT * (value - low) / (high - low);
     let (values, digits) = ticks(low, high);
-    // Nothing has an axis where there is nothing.
+    // No axis without values.
     for value in values.into_iter().filter(|_| has_values) {
         svg.line(&[(LEFT, y(value)), (LEFT + WIDTH, y(value))], "grid");
         let text = format!("{value:.digits$}");
@@ -215,7 +215,7 @@ fn panel(svg: &mut Svg, one: &Series, index: usize, top: f64, x: &dyn Fn(f64) ->
         }
         svg.line(&points, &class);
     }
-    // One mark for each pixel, however many fall on it.
+    // At most one mark for each pixel.
     let marks = one.values.iter().filter(|c| c.1.bad > 0);
     let marks: BTreeSet<i64> = marks.map(|c| x(c.0).round() as i64).collect();
     for x in marks.into_iter().map(|x| x as f64) {
@@ -243,7 +243,7 @@ pub fn series_svg(series: &[Series], lanes: &[Lane], title: &str, subtitle: &str
         bottom += GAP - LANE_PITCH;
     }
     let mut right = LEFT + WIDTH;
-    // As wide as its row, and to be seen.
+    // As wide as its row, and visible.
     let row_s = series.iter().map(|s| s.values.row_s()).fold(0.0, f64::max);
     let width = (WIDTH * row_s / (end - begin)).clamp(1.0, LANE_MARK_MAX);
     for lane in lanes {
@@ -252,7 +252,7 @@ pub fn series_svg(series: &[Series], lanes: &[Lane], title: &str, subtitle: &str
         for (time, _) in lane.times.iter().filter(|c| *c.1 > 0) {
             let from = x(time) - width / 2.0;
             match marks.last_mut() {
-                // What lasts is one mark.
+                // A continuous event is one mark.
                 Some(last) if from <= last.1 + width / 2.0 => last.1 = from + width,
                 _ => marks.push((from, from + width)),
             }
@@ -314,7 +314,7 @@ mod tests {
         assert_eq!(range(std::iter::empty()), None);
     }
 
-    /// Catches an axis of numbers that nobody has measured.
+    /// Catches an axis for a series without values.
     #[test]
     fn a_series_without_values_has_no_axis_of_them() {
         let mut one = of([(2.0, None), (3.0, None)]);
@@ -332,12 +332,12 @@ mod tests {
         let one = of((0..5).map(point));
         let svg = drawn(&one);
         assert_eq!(svg.matches("class=\"series-0\"").count(), 2);
-        // Where rows are missing, too.
+        // Missing rows, too.
         let mut pause = of((0..5).map(|n| (f64::from(n), Some(1.0))));
         pause.gap();
         pause.push(900.0, Some(1.0));
         assert_eq!(drawn(&pause).matches("class=\"series-0\"").count(), 2);
-        // Nothing stands on the frame.
+        // Nothing is drawn on the frame.
         let tops = svg.lines().filter(|l| l.contains("class=\"series-0\""));
         let tops = tops.flat_map(|l| l.split('"').nth(3).unwrap().split(" L"));
         let tops = tops.map(|p| p.split(' ').nth(1).unwrap().parse().unwrap());
@@ -348,7 +348,7 @@ mod tests {
         );
         let mut long = of((0..100_000).map(|n| (f64::from(n), Some(0.0))));
         assert!(drawn(&long).len() < 60_000);
-        // Bad ones are seen however rare they are, and cost no more than the columns.
+        // Rare marks are visible, and cost no more than the columns.
         long.mark(12_345.0);
         let svg = drawn(&long);
         assert_eq!(svg.matches("class=\"bad\"").count(), 1);
@@ -357,7 +357,7 @@ mod tests {
         assert!(drawn(&long).matches("class=\"bad\"").count() <= 821);
     }
 
-    /// Catches a peak that is thinned out, and a lane without what happened once.
+    /// Catches a peak that is thinned out, and a lane without a single event.
     #[test]
     fn a_peak_and_a_single_fault_of_a_hundred_thousand_are_drawn() {
         let value = |n: u32| if n == 54_321 { 10.0 } else { 0.0 };

@@ -1,13 +1,13 @@
-//! Just enough SVG.
+//! Minimal SVG.
 
 use std::fmt::Write as _;
 
-/// A drawing that grows downwards in the file in the order of the calls.
+/// A drawing in the order of the calls.
 pub(super) struct Svg {
     body: String,
 }
 
-/// Where a text stands relative to its point.
+/// Alignment of a text relative to its point.
 #[derive(Clone, Copy)]
 pub(super) enum Anchor {
     Start,
@@ -23,11 +23,11 @@ impl Anchor {
     }
 }
 
-/// How each file begins, and its third line.
+/// Start of each file, and its third line.
 const HEAD: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="#;
 const STYLE_HEAD: &str = "<style>text{";
 
-/// Whether a file that begins like this can be a drawing of ours.
+/// True if a file with this start may be a drawing of this program.
 pub fn is_drawing(head: &str) -> bool {
     let style = head.lines().nth(2);
     head.starts_with(HEAD) && style.is_some_and(|l| l.starts_with(STYLE_HEAD))
@@ -36,7 +36,7 @@ pub fn is_drawing(head: &str) -> bool {
 /// Mean width of a character, as a part of the font size.
 const CHARACTER_WIDTH: f64 = 0.57;
 
-/// How much wider bold characters are.
+/// Width ratio of bold characters.
 pub(super) const BOLD_WIDTH: f64 = 1.2;
 
 /// Estimated width of a text.
@@ -92,7 +92,7 @@ impl Svg {
         ));
     }
 
-    /// Title and subtitle of a drawing; where they end.
+    /// Title and subtitle of a drawing; returns their end.
     pub(super) fn head(&mut self, title: &str, subtitle: &str) -> f64 {
         let x = 24.0;
         self.text(x, 34.0, Anchor::Start, "title", title);
@@ -101,7 +101,7 @@ impl Svg {
         x + bold.max(text_width(subtitle, 12.5))
     }
 
-    /// The file: title and description for those who do not see it, style, drawing.
+    /// The file: title and description for accessibility, style, drawing.
     pub(super) fn finish(self, width: f64, height: f64, title: &str, style: &str) -> String {
         format!(
             r#"{HEAD}"{width:.0}" height="{height:.0}" viewBox="0 0 {width:.0} {height:.0}" role="img">

@@ -5,11 +5,11 @@ use super::svg::{text_width, Anchor, Svg};
 /// A signal in every cycle of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wave {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its width, 1 to 64.
+    /// Width, 1 to 64.
     pub width_bits: usize,
-    /// Its levels, the first cycle first.
+    /// Levels, the first cycle first.
     pub levels: Vec<u64>,
 }
 
@@ -23,14 +23,14 @@ const TOP: f64 = 84.0;
 /// Height of a row, and of the signal in it.
 const ROW: f64 = 30.0;
 const HEIGHT: f64 = 18.0;
-/// Width of all cycles at most, and of one.
+/// Most width of all cycles, and of one.
 const WIDTH_MAX: f64 = 2400.0;
 const CYCLE_MAX: f64 = 26.0;
 const MARGIN: f64 = 24.0;
-/// Room for the last values.
+/// Space for the last values.
 const VALUE: f64 = 84.0;
 
-/// Spans of one level: first cycle, the one behind the last, level.
+/// Spans of one level: first cycle, end (exclusive), level.
 fn spans(levels: &[u64]) -> Vec<(usize, usize, u64)> {
     let mut at = 0;
     let chunks = levels.chunk_by(|a, b| a == b);
@@ -42,7 +42,7 @@ fn spans(levels: &[u64]) -> Vec<(usize, usize, u64)> {
     chunks.map(span).collect()
 }
 
-/// The signals as SVG; the last cycle is marked: it is the one that they are drawn for.
+/// The signals as SVG; the last cycle is marked as the cycle of interest.
 pub fn waves_svg(waves: &[Wave], title: &str, subtitle: &str) -> String {
     let cycles = waves
         .iter()
@@ -77,7 +77,7 @@ pub fn waves_svg(waves: &[Wave], title: &str, subtitle: &str) -> String {
             svg.line(&points.collect::<Vec<_>>(), "wire");
             continue;
         }
-        // The value at the mark is what matters, and mostly too short to stand in its span.
+        // The value at the mark is the important one, and often too wide for its span.
         let last = wave
             .levels
             .last()

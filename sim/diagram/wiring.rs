@@ -1,24 +1,24 @@
-//! Draws how the ports of a device are wired to encoders: transceivers, resistors, lines.
+//! Draws the wiring between the ports of a device and encoders: transceivers, resistors, lines.
 
 use super::svg::{text_width, Anchor, Svg};
 
 /// A port of the device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WiredPort {
-    /// Its name.
+    /// Name.
     pub signal: String,
-    /// Where it is: connector and pin.
+    /// Connector and pin.
     pub place: String,
-    /// What it is for.
+    /// Purpose.
     pub meaning: String,
 }
 
 /// The ports of one channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WiredChannel {
-    /// Its number.
+    /// Number.
     pub number: usize,
-    /// CLOCK; none for an encoder that has no clock line.
+    /// CLOCK; `None` for an encoder without a clock line.
     pub clock: Option<WiredPort>,
     /// DATA to the encoder.
     pub data: WiredPort,
@@ -35,16 +35,16 @@ text{font-family:'DejaVu Sans',Verdana,Helvetica,sans-serif;fill:#1f2937}\
 .wire{stroke:#1f2937;stroke-width:1.3}.pair{stroke:#b45309;stroke-width:1.5}\
 .part{fill:#f8fafc;stroke:#334155;stroke-width:1.3}.resistor{fill:white;stroke:#b45309;stroke-width:1.3}";
 
-/// Width of the drawing, and where its columns are.
+/// Width of the drawing, and positions of its columns.
 const WIDTH: f64 = 960.0;
 const PLACE: f64 = 24.0;
 const DEVICE: (f64, f64) = (132.0, 270.0);
 const DRIVER: (f64, f64) = (400.0, 520.0);
 const ENCODER: (f64, f64) = (740.0, 860.0);
-/// Where the resistors are.
+/// Positions of the resistors.
 const PULL_DOWN: f64 = 335.0;
 const TERMINATION: f64 = 640.0;
-/// Between two ports, and the room around a part.
+/// Distance of two ports, and space around a part.
 const ROW: f64 = 34.0;
 const ROOM: f64 = 22.0;
 
@@ -77,7 +77,7 @@ fn line(svg: &mut Svg, y: f64, pin: &str, name: &str) {
     svg.text(ENCODER.0 + 7.0, y + 4.0, Anchor::Start, "signal", name);
 }
 
-/// A resistor that stands upright on a wire, with its value beside it.
+/// A vertical resistor on a wire, with its value next to it.
 fn resistor(svg: &mut Svg, x: f64, from: f64, to: f64, value: &str) {
     let (middle, half) = ((from + to) / 2.0, 9.0);
     svg.line(&[(x, from), (x, middle - half)], "wire");
@@ -91,7 +91,7 @@ fn ground(svg: &mut Svg, x: f64, y: f64) {
     svg.line(&[(x - 4.0, y + 4.0), (x + 4.0, y + 4.0)], "wire");
 }
 
-/// One channel below `top`; where it ends.
+/// Draws one channel below `top`; returns its end.
 fn channel(svg: &mut Svg, channel: &WiredChannel, top: f64) -> f64 {
     let first = top + ROOM;
     let data = first
@@ -118,7 +118,7 @@ fn channel(svg: &mut Svg, channel: &WiredChannel, top: f64) -> f64 {
     port(svg, &channel.data, data, "DI");
     port(svg, &channel.enable, data + ROW, "DE");
     port(svg, &channel.answer, data + 2.5 * ROW, "RO");
-    // The enable rests low while the device is not configured; the receiver is always on.
+    // The pull-down keeps the enable low while the device is not configured; the receiver is always on.
     resistor(svg, PULL_DOWN, data + ROW, data + 1.85 * ROW, "10 k");
     ground(svg, PULL_DOWN, data + 1.85 * ROW);
     svg.text(DRIVER.0 + 7.0, last - 4.0, Anchor::Start, "signal", "/RE");
@@ -137,7 +137,7 @@ fn channel(svg: &mut Svg, channel: &WiredChannel, top: f64) -> f64 {
     last + 6.0
 }
 
-/// The channels, then what else is on pins.
+/// The channels, then the other pins.
 pub fn wiring_svg(
     channels: &[WiredChannel],
     others: &[WiredPort],

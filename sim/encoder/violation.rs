@@ -1,8 +1,8 @@
-//! What a receiver can do wrong.
+//! Violations by a receiver.
 
 use crate::Time;
 
-/// A rule that the receiver broke.
+/// A rule broken by the receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Violation {
     /// The clock stopped in the middle of the answer.
@@ -12,22 +12,22 @@ pub enum Violation {
         /// Rising edges the frame should have had.
         expected: u32,
     },
-    /// The clock went on after the last bit of the answer.
+    /// The clock continued after the last bit of the answer.
     TooManyPulses {
         /// Rising edges the frame should have had.
         expected: u32,
     },
-    /// The clock stopped before the answer began. Right after a start time-out, wrong otherwise.
+    /// The clock stopped before the answer began. Correct after a start time-out, otherwise wrong.
     StoppedBeforeAnswer {
         /// Rising edges seen.
         seen: u32,
     },
     /// The clock fell within the recovery time, or before DATA had been LOW for tR.
     EarlyRestart {
-        /// How long after the last rising edge.
+        /// Time after the last rising edge.
         after: Time,
     },
-    /// The mean clock period is longer than 10 us or shorter than the encoder takes.
+    /// The mean clock period is longer than 10 us or shorter than the encoder supports.
     ClockRate {
         /// The mean period.
         period: Time,

@@ -324,7 +324,7 @@ print(seen[0], resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_
 """
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="memory is told in kB there")
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is reported in kB there")
 @pytest.mark.parametrize("rows", [300_000, pytest.param(HOUR, marks=pytest.mark.slow)])
 def test_an_hour_is_below_300_megabytes_and_whole(tmp_path: Path, rows: int) -> None:
     """Catches a file larger than documented, a lost row, and rows kept in memory."""
