@@ -199,7 +199,7 @@ fn an_alarm_sets_both_error_bits_in_opposite_senses() {
     config.causes[0].warnings = 0b100;
     let mut m = Master::new(config, 2_000_000);
     m.wait(3 * MS);
-    m.position22(POSITION_22, 0, 0); // an alarm that it cannot tell
+    m.position22(POSITION_22, 0, 0); // an alarm that it cannot report
     assert_eq!(m.encoder.word(area::OPERATING_STATUS, 0), Some(0));
     assert_eq!(m.encoder.word(area::OPERATING_STATUS, 1), Some(0));
 }
