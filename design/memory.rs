@@ -21,7 +21,7 @@ pub struct Memory<const D: usize, const A: usize> {
     pub write_enable: Signal<In, Bit>,
     /// Word to write.
     pub write_address: Signal<In, Bits<A>>,
-    /// What to write.
+    /// Data to write.
     pub write_data: Signal<In, Bits<D>>,
     _words: Vec<Bits<D>>,
 }
@@ -84,10 +84,10 @@ pub struct Rom<const D: usize, const A: usize> {
 }
 
 impl<const D: usize, const A: usize> Rom<D, A> {
-    /// A memory that holds `words` from word 0 on, and 0 behind them.
+    /// A memory that holds `words` from word 0 on, and 0 after them.
     ///
     /// # Panics
-    /// If there are more words than it has room for, or one has more than `D` bits.
+    /// If there are more words than it can hold, or one has more than `D` bits.
     pub fn new(words: &[u64]) -> Self {
         assert!(
             words.len() <= 1 << A,

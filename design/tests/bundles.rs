@@ -94,7 +94,7 @@ impl Logic for Row {
         }
         OfferIn::link(&mut self.passed_in, &mut self.last.whole);
         OfferOut::link(&mut self.passed_out, &mut self.last.half);
-        // What is assigned behind a link replaces it.
+        // An assignment after a link replaces it.
         self.passed_out.value.next = self.last.half.value.val() ^ 1;
     }
 }

@@ -65,7 +65,7 @@ impl Logic for Lamps {
     }
 }
 
-/// Each comment of a text with the line behind it, spaces aside.
+/// Each comment of a text with the line after it, without spaces.
 fn comments(text: &str, mark: &str) -> Vec<String> {
     let body: Vec<&str> = text
         .lines()

@@ -1,4 +1,4 @@
-//! What is of VHDL alone: names that are words there, ports that are read, files in the order of compilers.
+//! VHDL only: reserved names, ports that are read, order of files for compilers.
 
 use crate::zoo::check;
 use rtl_design::elaborate::elaborate;
