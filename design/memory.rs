@@ -7,7 +7,7 @@ pub const MEMORY_TIMING: &str = "rtl_design_memory";
 /// [`TimingInfo`] name by which elaboration recognises [`Rom`].
 pub const ROM_TIMING: &str = "rtl_design_rom";
 
-/// 2^`A` words of `D` bits. What is read is the word at `read_address` at the last clock edge; if that
+/// 2^`A` words of `D` bits. Reads return the word at `read_address` at the last clock edge; if that
 /// word was written at the same edge, the old one. It starts with all words 0.
 #[derive(Clone, Debug, LogicBlock)]
 pub struct Memory<const D: usize, const A: usize> {
@@ -69,7 +69,7 @@ impl<const D: usize, const A: usize> Logic for Memory<D, A> {
     }
 }
 
-/// 2^`A` words of `D` bits that never change. What is read is the word at `read_address` at the last clock edge, 0 before
+/// 2^`A` words of `D` bits that never change. Reads return the word at `read_address` at the last clock edge, 0 before
 /// the first.
 #[derive(Clone, Debug, LogicBlock)]
 pub struct Rom<const D: usize, const A: usize> {

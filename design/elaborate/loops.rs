@@ -94,7 +94,7 @@ impl Flat {
                     });
                 });
             }
-            // Reads of its own nets are intermediate values.
+            // Its reads of its driven nets are intermediate values.
             reads.retain(|net| !drives.contains(net));
             self.nodes.push(Node {
                 process: Some((id, index)),

@@ -20,9 +20,9 @@ use syn::{
     Fields, GenericArgument, GenericParam, ImplItem, ItemImpl, Lit, LitStr, Token, Type, TypePath,
 };
 
-/// The parts of a block, and what is written about them. Signals and bundles begin empty, registers with 0 or what `#[start(...)]` says,
-/// children marked `#[start]` as they are by default. What else there is (constants, children, lists, and registers marked
-/// `#[given]`) must be given, by name and all of it, to `Self::from_parts`:
+/// The parts of a block, with their documentation. Signals and bundles begin empty, registers with 0 or the value of `#[start(...)]`,
+/// children marked `#[start]` with their default. All other parts (constants, children, lists, and registers marked
+/// `#[given]`) must be passed, by name, to `Self::from_parts`:
 ///
 /// ```ignore
 /// #[derive(LogicBlock, Block)]
@@ -36,16 +36,16 @@ use syn::{
 /// Self::from_parts(TimerParts { last: Constant::new(last.into()) })
 /// ```
 ///
-/// A block that needs nothing else has `Default` instead.
+/// A block without such parts implements `Default` instead.
 ///
 /// `#[optional]` on a list of at most one signal: its name is emitted without a number.
 ///
-/// `#[bundle]` on a field whose type comes from [`macro@ports`]: its ports are emitted by their own names, or, as `#[bundle("_now")]`, with that
-/// behind them.
+/// `#[bundle]` on a field whose type comes from [`macro@ports`]: its ports are emitted with their own names, or, for `#[bundle("_now")]`, with that
+/// suffix.
 ///
-/// Where it is the only block of its file, what stands at the head of the file is its documentation, drawing included.
+/// If the block is the only one in its file, the head of the file is its documentation, including a drawing.
 ///
-/// `#[properties("x.sv")]` on the block names the file, beside the source, with what is proved about it.
+/// `#[properties("x.sv")]` on the block names the file with its properties, in the folder of the source.
 #[proc_macro_derive(Block, attributes(start, given, optional, bundle, properties))]
 pub fn block(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);

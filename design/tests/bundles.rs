@@ -10,7 +10,7 @@ use rust_hdl::prelude::*;
 /// A value and what is asked back.
 #[ports]
 pub struct Offer {
-    /// What is offered.
+    /// Offered value.
     pub value: Bits<7>,
     /// It is taken.
     #[back]

@@ -7,7 +7,7 @@ use rtl_design::reg::Reg;
 use rtl_design::vhdl::{package_name, print, print_files, Header};
 use rust_hdl::prelude::*;
 
-/// Words of VHDL in every place, and names that are one in VHDL, which tells no capital letters.
+/// Reserved words of VHDL in every place, and names that differ only in case, which VHDL ignores.
 #[derive(LogicBlock, Default)]
 struct Words {
     pub clock: Signal<In, Clock>,

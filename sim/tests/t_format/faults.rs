@@ -57,7 +57,7 @@ fn every_cause_is_told_and_the_position_held() {
             cause::CONTROL_PARITY,
             1 << 4 | 1 << 5 | 1 << 6,
         ),
-        // Of the same length as the right one.
+        // Same length as the right one.
         (Defect::OtherId(12), cause::ECHO, 1 << 5),
         (Defect::Delimiter { field: 0 }, cause::DELIMITER, 1 << 3),
         (Defect::Delimiter { field: 5 }, cause::DELIMITER, 1 << 3),
