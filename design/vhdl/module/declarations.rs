@@ -123,8 +123,7 @@ impl ModulePrinter<'_> {
         if stages.is_empty() {
             return String::new();
         }
-        let mut out =
-            format!("\n{INDENT}-- Synchroniser stages remain separate flip-flops.\n");
+        let mut out = format!("\n{INDENT}-- Synchroniser stages remain separate flip-flops.\n");
         for (attribute, value) in SYNCHRONISER {
             out.push_str(&format!("{INDENT}attribute {attribute} : string;\n"));
             for stage in &stages {
