@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,7 +49,7 @@ def test_every_trigger_has_a_row(card: endat.Card) -> None:
     samples = card.samples(345)
     assert len(samples) == 345
     assert (np.diff(samples.trigger.astype(np.int64)) == 1).all() and not samples.missing.any()
-    assert samples.time_s[0] == 0 and np.allclose(np.diff(samples.time_s), 2e-4)
+    assert samples.time_s[0] == 0 and np.allclose(np.diff(samples.time_s), 4e-4)
     assert (samples.run == -1).all()
     for one in samples.channels:
         assert one.fresh.all() and (one.cause_names() == "none").all()
@@ -61,8 +61,8 @@ def test_every_trigger_has_a_row(card: endat.Card) -> None:
 
 
 def test_seconds_are_those_of_the_card(card: endat.Card) -> None:
-    samples = card.samples(seconds=0.005)
-    assert len(samples) == 26 and samples.time_s[-1] == pytest.approx(0.005)
+    samples = card.samples(seconds=0.01)
+    assert len(samples) == 26 and samples.time_s[-1] == pytest.approx(0.01)
     assert len(card.samples(7, seconds=1)) == 7
 
 
@@ -83,7 +83,7 @@ def test_a_stream_comes_in_blocks_and_leaves_the_card_usable(card: endat.Card) -
     assert len(both) == len(one) + len(two) and both.channels[1].raw[len(one)] == two.channels[1].raw[0]
     assert len(both.head(3)) == 3
     assert both == both and both != both.head(3) and hash(both)
-    assert repr(both.head(3)).startswith("<endat.Samples: 3 rows, 0 s to 0.0004 s, 0 triggers missing, 2 channels")
+    assert repr(both.head(3)).startswith("<endat.Samples: 3 rows, 0 s to 0.0008 s, 0 triggers missing, 2 channels")
     assert repr(both.channels[0]) == f"<endat.ChannelSamples: {len(both)} rows, {len(both)} fresh, in deg>"
     assert len(card.samples(3)) == 3
 
@@ -116,7 +116,7 @@ def test_registers_are_written_by_name_and_within_their_limits(card: endat.Card)
     period = card.read_register(name)
     # While the timer stands, as the map asks for: a shorter one would begin when its counter has been round.
     timer = "card_config.trigger_sources.timer"
-    for cycles, seconds in ((period * 2, 4e-4), (period, 2e-4)):
+    for cycles, seconds in ((period * 2, 8e-4), (period, 4e-4)):
         card.write_register(timer, 0)
         card.write_register(name, cycles)
         card.write_register(timer, 1)
@@ -210,7 +210,7 @@ def test_t_format_turns_are_counted_on_with_the_bits_of_a_turn() -> None:
 
 def test_additional_data_come_with_their_positions(tmp_path: Path, service_file: Path) -> None:
     text = service_file.read_text().replace("[stream]", "[stream]\nadditional_data = true")
-    text = text.replace("sample_hz = 5_000", "sample_hz = 3_000")
+    text = text.replace("sample_hz = 2_500", "sample_hz = 1_500")
     assert "additional_data = true" in text
     config = tmp_path / "card.toml"
     config.write_text(text)
@@ -274,7 +274,7 @@ def test_a_recording_says_what_was_measured(card: endat.Card, tmp_path: Path) ->
         endat.record(card, path, 10)
     with h5py.File(path) as file:
         assert file["time"].attrs["units"] == "s" and len(file["time"]) == 300
-        assert np.allclose(np.diff(file["time"]), 2e-4)
+        assert np.allclose(np.diff(file["time"]), 4e-4)
         assert file.attrs["system_hz"] == card.identity.system_hz
         assert file.attrs["configuration_hash"] == f"{card.identity.configuration_hash:08x}"
         one = file["channel0"]
@@ -285,9 +285,9 @@ def test_a_recording_says_what_was_measured(card: endat.Card, tmp_path: Path) ->
         assert np.allclose(one["position"], one["raw"][:] * (360 / 2**BITS))
         names = h5py.check_enum_dtype(one["cause"].dtype)
         assert names["none"] == 0 and names["crc"] == next(c for c, n in endat.CAUSES.items() if n == "crc")
-    assert endat.record(card, path, seconds=0.01, replace=True, compression="gzip") == 51
+    assert endat.record(card, path, seconds=0.02, replace=True, compression="gzip") == 51
     with h5py.File(path) as file:
-        assert file["time"][-1] == pytest.approx(0.01)
+        assert file["time"][-1] == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize(("chunk", "latest_s"), [(300, 1e9), (300, 0), (700, 0)])
@@ -352,6 +352,21 @@ def test_an_hour_is_below_300_megabytes_and_whole(tmp_path: Path, rows: int) -> 
         assert "raw" not in one and np.all(steps == np.round(steps)) and np.any(steps)
 
 
+@contextmanager
+def started(command: list[str]) -> Iterator[subprocess.Popen[str]]:
+    """A program that obeys Ctrl-C and ends with the test, also with one that fails."""
+
+    def obey_ctrl_c() -> None:
+        # A shell starts a command in the background, such as a whole suite, with SIGINT ignored, and that is inherited.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=obey_ctrl_c) as program:
+        try:
+            yield program
+        finally:
+            program.kill()
+
+
 KILLED = """
 import sys, endat
 with endat.connect("load") as card:
@@ -364,11 +379,9 @@ def test_a_recording_that_is_killed_is_whole(tmp_path: Path) -> None:
     """Catches rows that nobody wrote out, and columns that end at different rows."""
     h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
     path = tmp_path / "killed.h5"
-    program = subprocess.Popen([sys.executable, "-c", KILLED, str(path)])
-    while program.poll() is None and not (path.exists() and path.stat().st_size > 2_000_000):
-        time.sleep(0.05)
-    program.kill()
-    program.wait()
+    with started([sys.executable, "-c", KILLED, str(path)]) as program:
+        while program.poll() is None and not (path.exists() and path.stat().st_size > 2_000_000):
+            time.sleep(0.05)
     with h5py.File(path) as file:
         rows = len(file["time"])
         assert rows > 100_000 and len(file["channel1/cause"]) == rows
@@ -466,13 +479,13 @@ with endat.connect(sys.argv[2]) as card:
 def test_ctrl_c_ends_a_recording_with_a_whole_file(tmp_path: Path, service: str) -> None:
     h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
     path = tmp_path / "night.h5"
-    program = subprocess.Popen([sys.executable, "-c", INTERRUPTED, str(path), service], stdout=subprocess.PIPE, text=True)
-    assert program.stdout is not None and program.stdout.readline() == "ready\n"
-    while not path.exists():
-        time.sleep(0.1)
-    time.sleep(2)
-    program.send_signal(signal.SIGINT)
-    told, _ = program.communicate(timeout=90)
+    with started([sys.executable, "-c", INTERRUPTED, str(path), service]) as program:
+        assert program.stdout is not None and program.stdout.readline() == "ready\n"
+        while program.poll() is None and not path.exists():
+            time.sleep(0.1)
+        time.sleep(2)
+        program.send_signal(signal.SIGINT)
+        told, _ = program.communicate(timeout=90)
     assert program.returncode == 0
     with h5py.File(path) as file:
         assert len(file["time"]) == len(file["channel1/raw"]) == int(told) > 0

@@ -57,10 +57,12 @@ def test_another_participant_takes_joints_of_the_card_in_radians(
     with subprocess.Popen([*command, "--joint", "shoulder", "--joint", "elbow"]) as node:
         taken: list[Any] = []
         end = time.monotonic() + 120
-        while len(taken) < 5 and time.monotonic() < end and node.poll() is None:
-            taken += reader.take(10)
-            time.sleep(0.05)
-        node.terminate()
+        try:
+            while len(taken) < 5 and time.monotonic() < end and node.poll() is None:
+                taken += reader.take(10)
+                time.sleep(0.05)
+        finally:
+            node.terminate()
     assert len(taken) >= 5, node.returncode
     for message in taken:
         assert list(message.name) == ["shoulder", "elbow"]
