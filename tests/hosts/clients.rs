@@ -21,7 +21,7 @@ fn pandablocks_finds_and_records_the_card() {
             script,
             env!("CARGO_BIN_EXE_endat-gen"),
             folder.to_str().unwrap(),
-            super::quick_service_port(),
+            super::quicker_service_port(),
         ])
         .args(more)
         .output()
