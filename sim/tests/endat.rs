@@ -1,6 +1,7 @@
 //! The EnDat port at its encoder: positions, the phase of the samples, requests and the service.
 
 mod alignment;
+mod encoder;
 mod position;
 mod requests;
 mod service;
