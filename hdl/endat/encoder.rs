@@ -21,16 +21,19 @@
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual (frame, tcal, tm, limits of CLOCK); TI motor-control SDK (launch on rising edges).
 
+mod answer_errors;
 mod crc;
 mod line_input;
 mod phase;
 mod ports;
 
 use crate::protocol::{ModeCommand, CRC_BITS, LEAD_PULSES, MODE_COMMAND_BITS, PARAMETER_BITS};
+pub use answer_errors::bit_error;
+use answer_errors::AnswerErrors;
 use crc::SerialCrc;
 use line_input::LineInput;
 use phase::Phase;
-pub use ports::{EncoderLineOut, EncoderSettingsIn};
+pub use ports::{EncoderErrorsIn, EncoderLineOut, EncoderSettingsIn};
 use rtl_design::reg::Reg;
 use rtl_design::Block;
 use rust_hdl::prelude::*;
@@ -62,6 +65,9 @@ pub struct Encoder {
     /// Settings of an encoder.
     #[bundle]
     pub settings: EncoderSettingsIn,
+    /// Errors that an encoder makes, if it can.
+    #[bundle]
+    pub wanted: EncoderErrorsIn,
     /// The position, bit 0 = LSB; taken with `latch`.
     pub position: Signal<In, Bits<48>>,
     /// Alarm 1: F1 = 1; taken with the start bit.
@@ -85,6 +91,8 @@ pub struct Encoder {
     pins: LineInput,
     #[start]
     crc: SerialCrc,
+    /// Errors on command, if the encoder makes them.
+    errors: Vec<AnswerErrors>,
     /// What the encoder is doing.
     #[start(Phase::Deaf)]
     phase: Reg<Phase>,
@@ -124,8 +132,22 @@ pub struct Encoder {
     is_due: Signal<Local, Bit>,
     /// High with the last rising edge of a part of the frame.
     is_last: Signal<Local, Bit>,
+    /// Calculation time of a frame that begins, in system clock cycles.
+    tcal: Signal<Local, Bits<16>>,
     /// Recovery time of this frame, in system clock cycles.
     tm: Signal<Local, Bits<13>>,
+    /// Width of the position in this frame.
+    bits: Signal<Local, Bits<6>>,
+    /// High if the next rising edge may launch the start bit, as far as edges are counted.
+    may_start: Signal<Local, Bit>,
+    /// Levels with which F1 and F2 are inverted.
+    inverts: Signal<Local, Bits<2>>,
+    /// Inverted bits of the CRC; `left` selects the one that is next.
+    crc_wrong: Signal<Local, Bits<8>>,
+    /// `left`, modulo 8.
+    left_low: Signal<Local, Bits<3>>,
+    /// High for one cycle when a bit of the answer, or the HIGH after it, is launched.
+    launches: Signal<Local, Bit>,
     /// Level that the next rising edge of CLOCK launches.
     level: Signal<Local, Bit>,
     /// High if the CRC covers `level`.
@@ -150,16 +172,32 @@ pub struct Encoder {
     high_limit_us: Constant<Bits<16>>,
     /// Microseconds of CLOCK LOW that end a frame.
     low_limit_us: Constant<Bits<16>>,
+    /// 1 if the encoder makes errors on command.
+    has_errors: Constant<Bit>,
+    _errors: usize,
+}
+
+/// What is fixed when an encoder is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EncoderMake {
+    /// Longest CLOCK LOW, in microseconds, 1..=65534 (LC linear encoders: 30).
+    pub clock_low_max_us: u64,
+    /// The encoder makes errors on command; without them `wanted` has no effect and takes no logic.
+    pub errors: bool,
+}
+
+impl Default for EncoderMake {
+    fn default() -> Self {
+        Self {
+            clock_low_max_us: CLOCK_LOW_MAX_US,
+            errors: false,
+        }
+    }
 }
 
 impl Encoder {
-    /// An encoder that takes CLOCK LOW for [`CLOCK_LOW_MAX_US`].
-    pub fn new() -> Self {
-        Self::with_clock_low_max_us(CLOCK_LOW_MAX_US)
-    }
-
-    /// An encoder that takes CLOCK LOW for `us` microseconds, 1..=65534 (LC linear encoders: 30).
-    pub fn with_clock_low_max_us(us: u64) -> Self {
+    /// An encoder of this make.
+    pub fn new(make: EncoderMake) -> Self {
         let edges = |edges: u32| Constant::new(u64::from(edges).into());
         let code = |command: ModeCommand| Constant::new(u64::from(command.code()).into());
         // One more: the first tick comes within a microsecond.
@@ -172,14 +210,19 @@ impl Encoder {
             parameter_edges: edges(TURNAROUND + PARAMETER_BITS),
             crc_bits: edges(CRC_BITS),
             high_limit_us: limit(CLOCK_HIGH_MAX_US),
-            low_limit_us: limit(us),
+            low_limit_us: limit(make.clock_low_max_us),
+            errors: (0..usize::from(make.errors))
+                .map(|_| AnswerErrors::default())
+                .collect(),
+            has_errors: Constant::new(make.errors),
+            _errors: make.errors.into(),
         })
     }
 }
 
 impl Default for Encoder {
     fn default() -> Self {
-        Self::new()
+        Self::new(EncoderMake::default())
     }
 }
 

@@ -1,6 +1,6 @@
-// driver_window: In a frame DATA is driven only from the tenth falling edge of CLOCK on; after a mode command with a parameter only from the thirty-fourth one.
+// driver_window: In a frame DATA is driven only from the tenth falling edge of CLOCK on; after a mode command with a parameter only from the thirty-fourth one. An early start bit on command may come with the rising edge before.
 // driver_off: DATA is not driven after a reset, without plug and out of step with the receiver.
-// answer_driven: DATA is driven from the start bit to the end of the recovery time.
+// answer_driven unless HAS_ERRORS (errors on command): DATA is driven from the start bit to the end of the recovery time.
 // low_at_rest: DATA that is driven outside an answer and its recovery time is LOW.
 reg f_past_valid; initial f_past_valid = 1'b0;
 reg f_parameter; initial f_parameter = 1'b0;
@@ -22,11 +22,13 @@ wire f_answer = (phase == PHASE_F1) | (phase == PHASE_F2) | (phase == PHASE_POSI
 wire [5:0] f_last = f_parameter ? 6'd34 : 6'd10;
 `ifndef FORMAL_ANY_STATE
 always @* begin
-    driver_window: assert (!oe_pin | (phase == PHASE_IDLE) | (f_falls >= f_last));
+    driver_window: assert (!oe_pin | (phase == PHASE_IDLE) | (f_falls >= f_last) | (HAS_ERRORS & (f_falls >= f_last - 6'd1)));
     driver_window_lemma_edges: assert (!((phase == PHASE_LISTEN) | (f_lead & (|left))) | (f_falls == f_rises + {5'd0, !pins_level_before}));
     driver_window_lemma_listen: assert ((phase != PHASE_LISTEN) | ((|left) & (left <= 6'd8) & (left + f_rises == 6'd8) & !f_parameter & !oe_pin));
     driver_window_lemma_lead: assert (!f_lead | !(|left) | ((left <= f_last - 6'd8) & (left + f_rises == f_last)));
-    answer_driven: assert (!f_answer | oe_pin);
+    driver_window_lemma_answer: assert (!f_answer | (f_falls >= f_last - 6'd1));
+    driver_window_lemma_wait: assert ((phase != PHASE_WAIT) | !f_parameter);
+    answer_driven: assert (!f_answer | oe_pin | HAS_ERRORS);
     answer_driven_lemma_lead: assert (!f_lead | (oe_pin == ((left == 6'd0) | ((left == 6'd1) & !pins_level_before))));
     answer_driven_lemma_rest: assert ((phase != PHASE_IDLE) | oe_pin);
     low_at_rest: assert (!oe_pin | f_answer | !data_pin);

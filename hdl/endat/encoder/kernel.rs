@@ -10,11 +10,13 @@ impl Logic for Encoder {
         self.pins.clock_pin.next = self.line.endat_clk.val();
         self.pins.data_pin.next = self.line.data_i.val();
         self.time_line();
+        self.choose_settings();
         self.begin_frame();
         self.take_command();
         self.choose_bit();
         self.send_answer();
         self.recover();
+        self.spoil_answer();
         self.lose_step();
         self.show();
     }
@@ -40,6 +42,35 @@ impl Logic for Encoder {
             & (self.level_us.q.val() == self.low_limit_us.val());
     }
 
+    /// Settings of the frame; with errors those of a wrong one.
+    fn choose_settings(&mut self) {
+        self.tcal.next = self.settings.tcal_cycles.val();
+        self.tm.next = self.settings.tm_cycles.val();
+        if self.has_f2.q.val() {
+            self.tm.next = self.settings.tm_22_cycles.val();
+        }
+        self.bits.next = self.settings.position_bits.val();
+        self.may_start.next = !self.left.q.val().any();
+        self.inverts.next = 0.into();
+        self.crc_wrong.next = 0.into();
+        self.left_low.next = self.left.q.val().get_bits::<3>(0);
+        for i in 0..self._errors {
+            if self.errors[i].applies.val() {
+                self.tcal.next = self.wanted.error_tcal_cycles.val();
+            }
+            if self.errors[i].active.val() {
+                self.tm.next = self.wanted.error_tm_cycles.val();
+                self.bits.next = self.settings.position_bits.val() ^ self.wanted.width_xor.val();
+                self.inverts.next = (bit_cast::<2, 1>(self.wanted.invert_f2.val().into()) << 1)
+                    | bit_cast::<2, 1>(self.wanted.invert_f1.val().into());
+                self.crc_wrong.next = bit_cast::<8, 5>(self.wanted.crc_xor.val()) << 1;
+                self.may_start.next = !self.wanted.no_start.val()
+                    & (!self.left.q.val().any()
+                        | (self.left.q.val() == bit_cast::<6, 2>(self.wanted.early_clocks.val())));
+            }
+        }
+    }
+
     /// The first falling edge takes the position, and switches the driver off for the command.
     fn begin_frame(&mut self) {
         self.begins.next = (self.phase.q.val() == Phase::Idle) & self.pins.fall.val();
@@ -50,7 +81,7 @@ impl Logic for Encoder {
         if self.begins.val() {
             self.phase.d.next = Phase::Listen;
             self.word.d.next = self.position.val();
-            self.timer.d.next = self.settings.tcal_cycles.val();
+            self.timer.d.next = self.tcal.val();
             self.left.d.next = self.command_edges.val();
             self.has_f2.d.next = false;
             self.data_pin.d.next = false;
@@ -130,7 +161,8 @@ impl Logic for Encoder {
                 self.is_covered.next = true;
             }
             Phase::Crc => {
-                self.level.next = self.crc.crc_bit.val();
+                self.level.next = self.crc.crc_bit.val()
+                    ^ self.crc_wrong.val().get_bit(self.left_low.val().index());
             }
             _ => {
                 // The start bit, and the end of the answer.
@@ -139,7 +171,7 @@ impl Logic for Encoder {
         }
         self.starts.next = (self.phase.q.val() == Phase::Wait)
             & self.pins.rise.val()
-            & !self.left.q.val().any()
+            & self.may_start.val()
             & self.is_due.val();
         self.crc.clear.next = self.starts.val();
         self.crc.covers.next = self.pins.rise.val() & self.is_covered.val();
@@ -152,15 +184,15 @@ impl Logic for Encoder {
         self.ends.next = (self.phase.q.val() == Phase::Tail) & self.pins.rise.val();
         if self.starts.val() {
             self.phase.d.next = Phase::F1;
-            self.f1.d.next = self.alarm_1.val();
-            self.f2.d.next = !self.alarm_2.val();
+            self.f1.d.next = self.alarm_1.val() ^ self.inverts.val().get_bit(0);
+            self.f2.d.next = !self.alarm_2.val() ^ self.inverts.val().get_bit(1);
             self.data_pin.d.next = self.level.val();
         }
         if self.pins.rise.val() {
             match self.phase.q.val() {
                 Phase::F1 => {
                     self.data_pin.d.next = self.level.val();
-                    self.left.d.next = self.settings.position_bits.val();
+                    self.left.d.next = self.bits.val();
                     self.phase.d.next = Phase::Position;
                     if self.has_f2.q.val() {
                         self.phase.d.next = Phase::F2;
@@ -168,7 +200,7 @@ impl Logic for Encoder {
                 }
                 Phase::F2 => {
                     self.data_pin.d.next = self.level.val();
-                    self.left.d.next = self.settings.position_bits.val();
+                    self.left.d.next = self.bits.val();
                     self.phase.d.next = Phase::Position;
                 }
                 Phase::Position => {
@@ -196,10 +228,6 @@ impl Logic for Encoder {
 
     /// The recovery time.
     fn recover(&mut self) {
-        self.tm.next = self.settings.tm_cycles.val();
-        if self.has_f2.q.val() {
-            self.tm.next = self.settings.tm_22_cycles.val();
-        }
         if self.ends.val() {
             self.timer.d.next = bit_cast::<16, 13>(self.tm.val());
         }
@@ -213,6 +241,31 @@ impl Logic for Encoder {
                 self.phase.d.next = Phase::Deaf;
                 self.oe_pin.d.next = false;
             }
+        }
+    }
+
+    /// Errors on command change what is launched.
+    fn spoil_answer(&mut self) {
+        self.launches.next = self.starts.val()
+            | (self.pins.rise.val()
+                & (self.is_covered.val()
+                    | (self.phase.q.val() == Phase::Crc)
+                    | (self.phase.q.val() == Phase::Tail)));
+        for i in 0..self._errors {
+            connect!(self.errors[i] <= self; clock, reset, begins, launches, level);
+            EncoderErrorsIn::link(&mut self.wanted, &mut self.errors[i].wanted);
+            if self.launches.val() {
+                self.data_pin.d.next = self.errors[i].wrong_level.val();
+                self.oe_pin.d.next = self.errors[i].drives.val();
+            }
+        }
+        // The driver may have been off.
+        if (self.phase.q.val() == Phase::Recovery)
+            & self.is_due.val()
+            & !self.pins.fall.val()
+            & self.has_errors.val()
+        {
+            self.oe_pin.d.next = true;
         }
     }
 

@@ -26,13 +26,28 @@ impl Rig {
     /// An encoder of 13 bits that is ready, at a clock of `hz`.
     fn new(hz: u64) -> Self {
         static MADE: OnceLock<Compiled> = OnceLock::new();
+        Self::of(&MADE, false, hz)
+    }
+
+    /// The same with errors on command.
+    fn with_errors() -> Self {
+        static MADE: OnceLock<Compiled> = OnceLock::new();
+        let mut rig = Self::of(&MADE, true, 1_000_000);
+        rig.set("error_tm_cycles", 2 * US);
+        rig
+    }
+
+    fn of(made: &OnceLock<Compiled>, errors: bool, hz: u64) -> Self {
         let make = || {
-            let mut block = Encoder::with_clock_low_max_us(30);
+            let mut block = Encoder::new(EncoderMake {
+                clock_low_max_us: 30,
+                errors,
+            });
             block.connect_all();
             Compiled::new(&elaborate(&block, "encoder").unwrap()).unwrap()
         };
         let mut rig = Self {
-            engine: MADE.get_or_init(make).clone(),
+            engine: made.get_or_init(make).clone(),
             cycle: 0,
             half: 32_000_000 / hz,
             changes: vec![],
@@ -324,4 +339,52 @@ fn sixteen_megahertz_have_four_cycles() {
     assert_eq!(bits, "10001011000100100100");
     rig.run(21 * US);
     assert!(rig.is_at_rest());
+}
+
+/// `arm` counts frames: two sound ones, three with errors, and sound ones again; a reset ends errors.
+#[test]
+fn errors_come_in_the_chosen_frames() {
+    let mut rig = Rig::with_errors();
+    let sound = rig.answer(0b111_000, 21);
+    rig.run(3 * US);
+    let mut wrong = sound.clone().into_bytes();
+    wrong[7] ^= 1;
+    let wrong = String::from_utf8(wrong).unwrap();
+    let arm = |rig: &mut Rig| {
+        rig.set("arm", 1);
+        rig.run(1);
+        rig.set("arm", 0);
+    };
+    (rig.set("skip_frames", 2), rig.set("error_frames", 3));
+    (
+        rig.set("bit_error", bit_error::INVERT),
+        rig.set("bit_number", 7),
+    );
+    arm(&mut rig);
+    for expected in [&sound, &sound, &wrong, &wrong, &wrong, &sound, &sound] {
+        assert_eq!(rig.answer(0b111_000, 21), *expected);
+        rig.run(3 * US);
+    }
+    rig.set("skip_frames", 0);
+    arm(&mut rig);
+    assert_eq!(rig.answer(0b111_000, 21), wrong);
+    rig.set("reset", 1);
+    rig.run(1);
+    rig.set("reset", 0);
+    rig.run(12 * US);
+    assert_eq!(rig.answer(0b111_000, 21), sound);
+}
+
+/// A wider answer than the model makes: the bits above the width come from the position.
+#[test]
+fn wider_answer_has_the_next_bits_of_the_position() {
+    let mut rig = Rig::with_errors();
+    rig.set("position", 0x1_1234);
+    (rig.set("error_frames", 1), rig.set("width_xor", 13 ^ 17));
+    rig.set("arm", 1);
+    rig.run(1);
+    rig.set("arm", 0);
+    let answer = rig.answer(0b000_111, 24);
+    assert_eq!(answer[2..19], *"00101100010010001");
+    assert!(answer.ends_with('1'));
 }

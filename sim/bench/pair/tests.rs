@@ -16,7 +16,7 @@ const ENCODER_HZ: u64 = 64_000_000;
 fn encoder() -> Compiled {
     static MADE: OnceLock<Compiled> = OnceLock::new();
     let make = || {
-        let mut block = Encoder::new();
+        let mut block = Encoder::default();
         block.connect_all();
         Compiled::new(&elaborate(&block, "encoder").unwrap()).unwrap()
     };

@@ -15,7 +15,7 @@ fn survivors(encoders: u64) -> (Vec<String>, usize) {
     // The model has no reset.
     let chosen: Vec<_> = all.iter().filter(|m| m.kind != Kind::Reset).collect();
     let is_seen = |mutant: &Compiled| {
-        (0..encoders).any(|seed| random_frames(&mut mutant.clone(), seed, 30).is_err())
+        (0..encoders).any(|seed| random_frames(&mut mutant.clone(), false, seed, 30).is_err())
     };
     let survives = |mutation: &&&Mutation| {
         let mutant = Compiled::new(&mutated(design, mutation));

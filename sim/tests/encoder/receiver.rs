@@ -1,8 +1,9 @@
 //! The encoder of hdl at the receiver of hdl: widths, rates, cables.
 
-use super::BLOCK;
+use super::{BLOCK, WRONG_BLOCK};
 use crate::position::rig::{engine, ABORT_US};
 use endat_hdl::endat::channel::Features;
+use endat_hdl::endat::encoder::bit_error;
 use endat_hdl::protocol::ModeCommand::{self, SendPosition, SendPositionAddInfo};
 use endat_sim::bench::{ChannelSettings, Pair};
 use endat_sim::line::LineConfig;
@@ -117,4 +118,102 @@ fn sweep(widths: &[u32], frames: usize) {
 #[test]
 fn receiver_takes_the_positions_of_the_encoder() {
     sweep(&[1, 13, 25, 37, 48], 3);
+}
+
+/// Errors on command, and the cause that the receiver reports for each.
+const CAUSES: [(&[(&str, u128)], &str); 13] = [
+    (&[], "none"),
+    (&[("crc_xor", 0b10000)], "CRC"),
+    (&[("crc_xor", 1)], "CRC"),
+    (&[("invert_f1", 1)], "F1"),
+    (&[("invert_f2", 1)], "F2"),
+    (
+        &[("bit_error", bit_error::INVERT as u128), ("bit_number", 10)],
+        "CRC",
+    ),
+    (
+        &[("bit_error", bit_error::LOW as u128), ("bit_number", 10)],
+        "data not falling after the frame",
+    ),
+    (
+        &[("bit_error", bit_error::HIGH as u128), ("bit_number", 10)],
+        "CRC",
+    ),
+    (
+        &[("bit_error", bit_error::OFF as u128), ("bit_number", 10)],
+        "CRC",
+    ),
+    (&[("width_xor", 1)], "CRC"),
+    (&[("no_start", 1)], "no start bit"),
+    (&[("error_tcal_cycles", 70 * 64)], "no start bit"),
+    (
+        &[("error_tm_cycles", 60 * 64)],
+        "data not falling after the frame",
+    ),
+];
+
+#[test]
+fn receiver_reports_each_error_on_command() {
+    let (system_hz, endat_hz) = (100_000_000, 3_125_000);
+    let mut settings = ChannelSettings::new(system_hz, endat_hz, SendPositionAddInfo, 25);
+    settings.abort_us = ABORT_US;
+    let receiver = (engine(system_hz, Features::NONE), system_hz);
+    let line = LineConfig::cable(20.0);
+    let mut pair = Pair::new(receiver, (WRONG_BLOCK.clone(), 64_000_000), 7_000, line);
+    for (name, value) in settings.ports() {
+        pair.set_receiver(name, value);
+    }
+    let times = [
+        ("tcal_cycles", 320),
+        ("tm_cycles", 1280),
+        ("tm_22_cycles", 1280),
+    ];
+    let device = [
+        ("position_bits", 25),
+        ("endat22", 1),
+        ("plugged", 1),
+        ("position", 0x15A_5C3A),
+    ];
+    for (name, value) in times.into_iter().chain(device) {
+        pair.set_encoder(name, value);
+    }
+    pair.run_for(20 * US);
+    let frame = |pair: &mut Pair<_, _>, context: &str| {
+        let before = pair.results().len();
+        pair.trigger();
+        assert!(
+            pair.run_until_done(5 * MS, |p| p.results().len() > before),
+            "{context}"
+        );
+        assert!(
+            pair.run_until_done(5 * MS, |p| p.receiver("busy") == 0),
+            "{context}"
+        );
+        pair.results()[before].cause_name()
+    };
+    let sound = [("error_tcal_cycles", 320), ("error_tm_cycles", 1280)];
+    let names = [
+        "crc_xor",
+        "invert_f1",
+        "invert_f2",
+        "bit_error",
+        "bit_number",
+        "width_xor",
+        "no_start",
+    ];
+    for (errors, cause) in CAUSES {
+        let context = format!("{errors:?}");
+        // The first result after an error has a frame that measures the delay, so the second one gets the error.
+        assert_eq!(frame(&mut pair, &context), "none");
+        let none = names.map(|name| (name, 0));
+        for (name, value) in none.into_iter().chain(sound).chain(errors.iter().copied()) {
+            pair.set_encoder(name, value);
+        }
+        pair.set_encoder("error_frames", 1);
+        pair.set_encoder("arm", 1);
+        pair.run_for(US);
+        pair.set_encoder("arm", 0);
+        assert_eq!(frame(&mut pair, &context), cause, "{context}");
+    }
+    assert_eq!(frame(&mut pair, "after all"), "none");
 }

@@ -5,7 +5,8 @@
 //! A model that is out of step with the receiver keeps DATA as it was; the block switches its driver off. A model of EnDat 2.1 does not
 //! know that a parameter follows 010010; the block does, and waits for its end.
 
-use super::{BLOCK, CLOCK_LOW_MAX_US};
+use super::frame::{Error, Frame, CYCLE, POSITION_22};
+use super::{BLOCK, CLOCK_LOW_MAX_US, WRONG_BLOCK};
 use endat_sim::encoder::{
     Defect, Drive, Encoder, EncoderConfig, FrameEnd, PositionSource, Symbol, Violation,
 };
@@ -15,138 +16,8 @@ use rtl_design::engine::{Compiled, Engine, PortId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Period of the block's system clock: 64 MHz.
-const CYCLE: Time = 15_625;
 /// Cycles of a microsecond.
 const US_CYCLES: u64 = US / CYCLE;
-/// CLOCK HIGH after which a frame is over.
-const HIGH_MAX: Time = 10 * US;
-/// Mode commands whose answer is a position.
-const POSITION_21: u8 = 0b000_111;
-const POSITION_22: u8 = 0b111_000;
-/// Mode commands that the receiver sends with a parameter.
-const PARAMETER: [u8; 6] = [
-    0b001_110, 0b011_100, 0b100_011, 0b101_010, 0b110_001, 0b010_010,
-];
-
-/// What an encoder sends and when, in one frame.
-#[derive(Clone, Copy, Debug)]
-struct Reply {
-    tcal_cycles: u64,
-    tm_cycles: u64,
-    alarms: (bool, bool),
-}
-
-/// What the receiver does in one frame.
-#[derive(Clone, Copy, Debug)]
-struct Frame {
-    command: u8,
-    parameter: u32,
-    half: Time,
-    first_low: Time,
-    pulses: u32,
-    /// Pulse before which CLOCK is LOW for longer, and by how much.
-    park: Option<(u32, Time)>,
-    /// From the last rising edge to the next frame.
-    pause: Time,
-    reply: Reply,
-}
-
-impl Frame {
-    /// A random one for an encoder of so many bits.
-    fn random(rng: &mut Rng, position_bits: u32, endat22: bool) -> Self {
-        // From 16 MHz to 100 kHz, each decade as likely as the other.
-        let half = (31_250.0 * 160f64.powf(rng.in_range(0, 1000) as f64 / 1000.0)) as Time;
-        let first_low = match rng.in_range(0, 1) {
-            0 => half,
-            _ => half.max(rng.in_range(2, 10) * US),
-        };
-        let command = match rng.in_range(0, 9) {
-            0 => random_command(rng, endat22),
-            1..=4 => POSITION_21,
-            _ => POSITION_22,
-        };
-        let is_known = command == POSITION_21 || endat22 && command == POSITION_22;
-        // Between two rising edges, so that no rounding decides.
-        let edge = rng.in_range(2, 40);
-        let tcal = first_low + (edge - 1) * 2 * half - half;
-        let start = (edge as u32).max(11);
-        let answer = position_bits + 7 + u32::from(command == POSITION_22);
-        let lead = match PARAMETER.contains(&command) {
-            true => 34,
-            false => 10,
-        };
-        let whole = start + answer;
-        let (pulses, is_cut) = match rng.in_range(0, 19) {
-            _ if !is_known => (lead, true),
-            0 => (rng.in_range(1, u64::from(whole) - 1) as u32, true),
-            1 => (whole + rng.in_range(1, 9) as u32, true),
-            _ => (whole, false),
-        };
-        let tm = match rng.in_range(0, 1) {
-            0 => rng.in_range(1_250, 3_750) * NS,
-            _ => rng.in_range(10, 30) * US,
-        };
-        let longer = rng.in_range(600, 20_000) * NS;
-        let pause = match rng.in_range(0, 19) {
-            0 if is_known => rng.in_range(100, 9_000) * NS,
-            _ if is_cut => HIGH_MAX + 2 * US + longer,
-            1 => tm / 2,
-            _ => tm + longer,
-        };
-        // Neither while the block counts its last microsecond nor while tm ends.
-        let pause = match pause {
-            9_500_000..12_000_000 => pause + 2_500 * NS,
-            _ => pause,
-        };
-        let pause = match pause.abs_diff(tm) {
-            0..300_000 => pause.max(12 * US) + US,
-            _ => pause,
-        };
-        let low = rng.in_range(5, 40) * US;
-        let park = (rng.in_range(0, 19) == 0 && !(29..=31).contains(&((low + half) / US)))
-            .then_some((rng.in_range(2, pulses.into()) as u32, low));
-        Self {
-            command,
-            parameter: rng.next_u64() as u32 & 0xFF_FFFF,
-            half,
-            first_low,
-            pulses,
-            park,
-            pause,
-            reply: Reply {
-                tcal_cycles: tcal / CYCLE,
-                tm_cycles: tm / CYCLE,
-                alarms: (rng.in_range(0, 7) == 0, rng.in_range(0, 7) == 0),
-            },
-        }
-    }
-
-    /// DATA from falling edge `fall` on (1 = first).
-    fn data(&self, fall: u32) -> Drive {
-        let (bits, count) = match PARAMETER.contains(&self.command) {
-            true => (
-                u64::from(self.command) << 24 | u64::from(self.parameter),
-                30,
-            ),
-            false => (self.command.into(), 6),
-        };
-        match fall {
-            2 => Drive::Low,
-            n if (3..3 + count).contains(&n) => Drive::level(bits >> (2 + count - n) & 1 == 1),
-            _ => Drive::Released,
-        }
-    }
-}
-
-/// Any code; a parameter only to an encoder that has the command.
-fn random_command(rng: &mut Rng, endat22: bool) -> u8 {
-    match rng.in_range(0, 63) as u8 {
-        0b010_010 if !endat22 => 0,
-        code => code,
-    }
-}
-
 /// A change of DATA by the model, and whether the block comes up to a microsecond later.
 #[derive(Clone, Copy, Debug)]
 struct Change {
@@ -172,6 +43,9 @@ struct Ports {
 /// Both encoders.
 struct Twin<'a> {
     block: &'a mut Compiled,
+    /// The block makes errors on command.
+    errors: bool,
+    position_bits: u32,
     ports: Ports,
     model: Encoder,
     seed: u64,
@@ -197,11 +71,20 @@ fn position(seed: u64, frame: u64) -> u64 {
     Rng::new(seed ^ frame << 32).next_u64() & (u64::MAX >> 16)
 }
 
+/// A frame is prepared so long before it begins.
+const PREPARED: Time = 200 * NS;
+
 /// How long both start up.
 const START: Time = 20 * US;
 
 impl<'a> Twin<'a> {
-    fn new(block: &'a mut Compiled, position_bits: u32, endat22: bool, seed: u64) -> Self {
+    fn new(
+        block: &'a mut Compiled,
+        errors: bool,
+        position_bits: u32,
+        endat22: bool,
+        seed: u64,
+    ) -> Self {
         let mut config = match endat22 {
             true => EncoderConfig::endat22(position_bits),
             false => EncoderConfig::endat21(position_bits),
@@ -226,6 +109,8 @@ impl<'a> Twin<'a> {
         };
         let mut twin = Self {
             block,
+            errors,
+            position_bits,
             ports,
             model: Encoder::new(config),
             seed,
@@ -341,33 +226,56 @@ impl<'a> Twin<'a> {
         self.advance(time);
     }
 
+    /// Settings and errors of a frame.
+    fn prepare(&mut self, frame: &Frame) {
+        let reply = frame.reply;
+        let (alarm_1, alarm_2) = reply.alarms;
+        let (invert_1, invert_2) = match reply.error {
+            Error::Alarms(invert_1, invert_2) => (invert_1, invert_2),
+            _ => (false, false),
+        };
+        let tcal = Defect::LateStart(reply.tcal_cycles * CYCLE);
+        let tm = Defect::LateFall(reply.tm_cycles * CYCLE);
+        let error_bits = Defect::ErrorBits {
+            f1: alarm_1 ^ invert_1,
+            f2: !alarm_2 ^ invert_2,
+        };
+        let all = [Some(tcal), Some(tm), Some(error_bits), reply.error.defect()];
+        all.into_iter()
+            .flatten()
+            .for_each(|d| self.model.spoil_next(d));
+        // Only one of them counts.
+        let tm_22 = frame.command == POSITION_22;
+        let is_wrong = self.errors && reply.error != Error::None;
+        let of = |counts: bool, cycles: u64| match counts {
+            true => cycles,
+            false => cycles ^ 0x1000,
+        };
+        self.set("tcal_cycles", of(!is_wrong, reply.tcal_cycles));
+        self.set("error_tcal_cycles", of(is_wrong, reply.tcal_cycles));
+        self.set("tm_cycles", of(!is_wrong && !tm_22, reply.tm_cycles));
+        self.set("tm_22_cycles", of(!is_wrong && tm_22, reply.tm_cycles));
+        self.set("error_tm_cycles", of(is_wrong, reply.tm_cycles));
+        self.set("alarm_1", alarm_1.into());
+        self.set("alarm_2", alarm_2.into());
+        for (name, value) in reply.error.inputs(self.position_bits) {
+            self.set(name, value);
+        }
+        self.set("error_frames", is_wrong.into());
+        self.set("arm", 1);
+        self.tick();
+        self.set("arm", 0);
+    }
+
     /// One frame from `time` on; gives the time of the next one.
     fn frame(&mut self, mut time: Time, frame: &Frame) -> Time {
+        self.advance(time - PREPARED);
+        if self.model.is_ready(time - PREPARED) {
+            self.prepare(frame);
+        }
         self.advance(time);
-        let reply = frame.reply;
         let busy = self.block.get(self.ports.busy) == 1;
         self.is_other_busy |= busy == self.model.is_ready(time);
-        if self.model.is_ready(time) {
-            let (alarm_1, alarm_2) = reply.alarms;
-            self.model
-                .spoil_next(Defect::LateStart(reply.tcal_cycles * CYCLE));
-            self.model
-                .spoil_next(Defect::LateFall(reply.tm_cycles * CYCLE));
-            self.model.spoil_next(Defect::ErrorBits {
-                f1: alarm_1,
-                f2: !alarm_2,
-            });
-            self.set("tcal_cycles", reply.tcal_cycles);
-            // Only the one that counts.
-            let (used, other) = match frame.command {
-                POSITION_22 => ("tm_22_cycles", "tm_cycles"),
-                _ => ("tm_cycles", "tm_22_cycles"),
-            };
-            self.set(used, reply.tm_cycles);
-            self.set(other, reply.tm_cycles ^ 0x1000);
-            self.set("alarm_1", alarm_1.into());
-            self.set("alarm_2", alarm_2.into());
-        }
         for pulse in 1..=frame.pulses {
             let park = frame.park.filter(|park| park.0 == pulse);
             let low = match pulse {
@@ -433,18 +341,19 @@ impl<'a> Twin<'a> {
 /// The first difference.
 pub fn random_frames(
     block: &mut Compiled,
+    errors: bool,
     seed: u64,
     frames: usize,
 ) -> Result<BTreeMap<String, u64>, String> {
     let mut rng = Rng::new(seed);
     let position_bits = rng.in_range(1, 52).min(48) as u32;
     let endat22 = rng.in_range(0, 3) != 0;
-    let mut twin = Twin::new(block, position_bits, endat22, rng.next_u64() >> 16);
+    let mut twin = Twin::new(block, errors, position_bits, endat22, rng.next_u64() >> 16);
     let mut time = START + 5 * US;
     for number in 0..frames {
-        let frame = Frame::random(&mut rng, position_bits, endat22);
+        let frame = Frame::random(&mut rng, position_bits, endat22, errors);
         time = twin.frame(time, &frame);
-        twin.advance(time);
+        twin.advance(time - PREPARED);
         twin.compare().map_err(|what| {
             let log = twin.model.frames().last();
             format!("seed {seed}, frame {number}, {position_bits} bits, endat22 = {endat22}: {what}\n{frame:?}\n{log:?}")
@@ -460,13 +369,16 @@ pub fn random_frames(
     Ok(ends)
 }
 
-/// Encoders with these seeds, so many frames each.
+/// Encoders with these seeds, so many frames each; every second one makes errors on command.
 fn agree(seeds: std::ops::Range<u64>, frames: usize) -> BTreeMap<String, u64> {
     let mut all = BTreeMap::new();
     for seed in seeds {
-        let ends =
-            random_frames(&mut BLOCK.clone(), seed, frames).unwrap_or_else(|e| panic!("{e}"));
-        for (end, count) in ends {
+        let (block, errors) = match seed % 2 {
+            0 => (&BLOCK, false),
+            _ => (&WRONG_BLOCK, true),
+        };
+        let ends = random_frames(&mut (*block).clone(), errors, seed, frames);
+        for (end, count) in ends.unwrap_or_else(|e| panic!("{e}")) {
             *all.entry(end).or_default() += count;
         }
     }
