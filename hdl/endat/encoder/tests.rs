@@ -82,7 +82,7 @@ impl Rig {
     fn run(&mut self, cycles: u64) {
         for _ in 0..cycles {
             self.cycle += 1;
-            self.set("tick_us", u64::from(self.cycle % US == 0));
+            self.set("tick_us", u64::from(self.cycle.is_multiple_of(US)));
             let before = self.drive();
             if self.get("latch") == 1 {
                 self.latches.push(self.cycle);
@@ -152,17 +152,20 @@ fn encoder_answers_both_generations_with_their_error_bits() {
     assert!(rig.is_at_rest());
     rig.set("position_bits", 29);
     rig.set("position", 0x1234_5678);
-    (rig.set("alarm_1", 1), rig.set("alarm_2", 1));
+    rig.set("alarm_1", 1);
+    rig.set("alarm_2", 1);
     let position: String = (0..29)
         .map(|i| char::from(b'0' + (0x1234_5678_u32 >> i & 1) as u8))
         .collect();
     assert_eq!(rig.answer(0b111_000, 37), format!("110{position}001011"));
     rig.run(3 * US);
     // Each alarm has its own bit.
-    (rig.set("alarm_1", 0), rig.set("alarm_2", 1));
+    rig.set("alarm_1", 0);
+    rig.set("alarm_2", 1);
     assert_eq!(rig.answer(0b111_000, 37)[..3], *"100");
     rig.run(3 * US);
-    (rig.set("alarm_1", 1), rig.set("alarm_2", 0));
+    rig.set("alarm_1", 1);
+    rig.set("alarm_2", 0);
     assert_eq!(rig.answer(0b111_000, 37)[..3], *"111");
 }
 
@@ -355,11 +358,10 @@ fn errors_come_in_the_chosen_frames() {
         rig.run(1);
         rig.set("arm", 0);
     };
-    (rig.set("skip_frames", 2), rig.set("error_frames", 3));
-    (
-        rig.set("bit_error", bit_error::INVERT),
-        rig.set("bit_number", 7),
-    );
+    rig.set("skip_frames", 2);
+    rig.set("error_frames", 3);
+    rig.set("bit_error", bit_error::INVERT);
+    rig.set("bit_number", 7);
     arm(&mut rig);
     for expected in [&sound, &sound, &wrong, &wrong, &wrong, &sound, &sound] {
         assert_eq!(rig.answer(0b111_000, 21), *expected);
@@ -380,7 +382,8 @@ fn errors_come_in_the_chosen_frames() {
 fn wider_answer_has_the_next_bits_of_the_position() {
     let mut rig = Rig::with_errors();
     rig.set("position", 0x1_1234);
-    (rig.set("error_frames", 1), rig.set("width_xor", 13 ^ 17));
+    rig.set("error_frames", 1);
+    rig.set("width_xor", 13 ^ 17);
     rig.set("arm", 1);
     rig.run(1);
     rig.set("arm", 0);

@@ -66,7 +66,7 @@ fn frames(count: usize, seed: u64) -> Stimulus {
     let mut settings = [0u128; 19];
     let mut run = |settings: &[u128; 19], rng: &mut Rng, pins: [u128; 5], count: u64| {
         for _ in 0..count {
-            let tick = u128::from(cycles.len() % 8 == 0);
+            let tick = u128::from(cycles.len().is_multiple_of(8));
             let position = u128::from(rng.next_u64() >> 16);
             cycles.push([&pins[..], &[tick, position], settings].concat());
         }
@@ -78,7 +78,7 @@ fn frames(count: usize, seed: u64) -> Stimulus {
         run(
             &settings,
             &mut rng,
-            [0, 1, 1, 1, u128::from(frame % 3 == 0)],
+            [0, 1, 1, 1, u128::from(frame.is_multiple_of(3))],
             1,
         );
         let half = rng.in_range(1, 3);

@@ -160,7 +160,7 @@ impl<'a> Twin<'a> {
         };
         self.block.set(self.ports.endat_clk, self.clock.into());
         self.block.set(self.ports.data_i, line.into());
-        let tick = self.cycle % US_CYCLES == 0;
+        let tick = self.cycle.is_multiple_of(US_CYCLES);
         self.block.set(self.ports.tick_us, tick.into());
         let next = position(self.seed, self.latches);
         self.block.set(self.ports.position, next.into());
@@ -288,7 +288,7 @@ impl<'a> Twin<'a> {
             time += frame.half;
         }
         let rise = time - frame.half;
-        self.advance(rise + frame.half.min(frame.pause));
+        self.advance(rise + frame.half.min(frame.pause - PREPARED));
         self.receiver = Drive::Released;
         rise + frame.pause
     }
