@@ -147,11 +147,13 @@ impl Frame {
             ),
             false => Error::None,
         };
+        // The next frame comes too soon: its clock may be another one, and it continues a frame that was cut.
+        let is_hurried = is_known && rng.in_range(0, 19) == 0;
         // Between two rising edges, so that no rounding decides.
-        let edge = rng.in_range(2, 40);
-        let tcal = match error {
-            Error::Early(_) => 0,
-            _ => first_low + (edge - 1) * 2 * half - half,
+        let (edge, tcal) = match (rng.in_range(2, 40), error) {
+            (_, Error::Early(_)) => (2, 0),
+            _ if is_hurried => (2, 0),
+            (edge, _) => (edge, first_low + (edge - 1) * 2 * half - half),
         };
         let (start, bits) = match error {
             Error::Early(clocks) => (11 - clocks, position_bits),
@@ -171,13 +173,14 @@ impl Frame {
             1 => (whole + rng.in_range(1, 9) as u32, true),
             _ => (whole, false),
         };
+        // Longer than a pulse of any clock, where one may follow.
         let tm = match rng.in_range(0, 1) {
-            0 => rng.in_range(1_250, 3_750) * NS,
+            0 if !is_hurried => rng.in_range(1_250, 3_750) * NS,
             _ => rng.in_range(10, 30) * US,
         };
         let longer = rng.in_range(600, 20_000) * NS;
         let pause = match rng.in_range(0, 19) {
-            0 if is_known => rng.in_range(300, 9_000) * NS,
+            _ if is_hurried => rng.in_range(300, 9_000) * NS,
             _ if is_cut => HIGH_MAX + 2 * US + longer,
             1 => (tm / 2).max(300 * NS),
             _ => tm + longer,
@@ -191,7 +194,8 @@ impl Frame {
             0..300_000 => pause.max(12 * US) + US,
             _ => pause,
         };
-        let low = rng.in_range(5, 40) * US;
+        // Whole periods: edges stay where they are.
+        let low = rng.in_range(5, 40) * US / (2 * half) * 2 * half;
         let park = (rng.in_range(0, 19) == 0 && !(29..=31).contains(&((low + half) / US)))
             .then_some((rng.in_range(2, pulses.into()) as u32, low));
         Self {
