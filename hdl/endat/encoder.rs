@@ -8,7 +8,7 @@
 //! ```
 //!
 //! `R(s)` launches the start bit: the first rising edge from `R11` on that comes `tcal_cycles` after `F1`. The encoder takes the position at
-//! `F1`, and the alarms with the start bit. It knows `000111`, and `111000` without additional data. Any other mode command has no answer:
+//! `F1`, and the alarms with the start bit. It answers `000111`, and `111000` without additional data. Any other mode command has no answer:
 //! DATA is LOW from `F10` on, from `F34` on if the receiver sends a parameter with it.
 //!
 //! CLOCK and DATA pass two synchroniser stages. So DATA changes two to three system clock cycles after the edge of CLOCK at the pin, and a

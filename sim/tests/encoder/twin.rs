@@ -1,7 +1,7 @@
 //! The encoder of hdl and the simulation's encoder model at one receiver, which breaks rules now and then: both do the same to DATA, frame
 //! by frame and edge by edge.
 //!
-//! Three differences are meant. The model has all fourteen mode commands, so a frame with one that the block refuses ends before its answer.
+//! Three differences are intended. The model has all fourteen mode commands, so a frame with one that the block refuses ends before its answer.
 //! A model that is out of step with the receiver keeps DATA as it was; the block switches its driver off. A model of EnDat 2.1 does not
 //! know that a parameter follows 010010; the block does, and waits for its end.
 
