@@ -7,7 +7,7 @@ pub const MEMORY_TIMING: &str = "rtl_design_memory";
 /// [`TimingInfo`] name by which elaboration recognises [`Rom`].
 pub const ROM_TIMING: &str = "rtl_design_rom";
 
-/// 2^`A` words of `D` bits. What is read is the word at `read_address` at the last clock edge; if that
+/// 2^`A` words of `D` bits. Reads return the word at `read_address` at the last clock edge; if that
 /// word was written at the same edge, the old one. It starts with all words 0.
 #[derive(Clone, Debug, LogicBlock)]
 pub struct Memory<const D: usize, const A: usize> {
@@ -21,7 +21,7 @@ pub struct Memory<const D: usize, const A: usize> {
     pub write_enable: Signal<In, Bit>,
     /// Word to write.
     pub write_address: Signal<In, Bits<A>>,
-    /// What to write.
+    /// Data to write.
     pub write_data: Signal<In, Bits<D>>,
     _words: Vec<Bits<D>>,
 }
@@ -69,7 +69,7 @@ impl<const D: usize, const A: usize> Logic for Memory<D, A> {
     }
 }
 
-/// 2^`A` words of `D` bits that never change. What is read is the word at `read_address` at the last clock edge, 0 before
+/// 2^`A` words of `D` bits that never change. Reads return the word at `read_address` at the last clock edge, 0 before
 /// the first.
 #[derive(Clone, Debug, LogicBlock)]
 pub struct Rom<const D: usize, const A: usize> {
@@ -84,10 +84,10 @@ pub struct Rom<const D: usize, const A: usize> {
 }
 
 impl<const D: usize, const A: usize> Rom<D, A> {
-    /// A memory that holds `words` from word 0 on, and 0 behind them.
+    /// A memory that holds `words` from word 0 on, and 0 after them.
     ///
     /// # Panics
-    /// If there are more words than it has room for, or one has more than `D` bits.
+    /// If there are more words than it can hold, or one has more than `D` bits.
     pub fn new(words: &[u64]) -> Self {
         assert!(
             words.len() <= 1 << A,

@@ -81,14 +81,14 @@ register_block!(
     pos_edge
 );
 register_block!(
-    /// One stage of a synchroniser: like [`Reg`], but emitted with attributes that keep it a flip-flop of its own.
+    /// One stage of a synchroniser: like [`Reg`], but emitted with attributes that keep it a separate flip-flop.
     SyncReg,
     SYNC_REG_TIMING,
     pos_edge
 );
 register_block!(
-    /// A synchroniser stage that takes its value on the falling edge of the clock. What it reads must be a pin of the design,
-    /// and what reads it a synchroniser: everything else has whole cycles.
+    /// A synchroniser stage that samples on the falling edge of the clock. Its input must be a pin of the design,
+    /// and its reader a synchroniser: all other logic has whole cycles.
     FallReg,
     FALL_REG_TIMING,
     neg_edge

@@ -1,10 +1,10 @@
-//! Card: encoder ports of either protocol with triggers, registers and stream, behind a host link.
+//! Card: encoder ports with triggers, registers and stream, connected to a host link.
 //!
 //! ```text
 //! host <-> front (uart_bridge, or one of bus) <-> RegisterBank, ChannelRegisters, Stream <-> EncoderPort 0, 1, ...
 //! ```
 //!
-//! Reading order: [`card_core`] (who is connected to whom), [`register_bank`] and [`channel_registers`], [`trigger`], [`stream`]; then a front:
+//! Reading order: [`card_core`] (connections), [`register_bank`] and [`channel_registers`], [`trigger`], [`stream`]; then a front:
 //! [`uart_bridge`] or one of [`bus`].
 
 pub mod bus;

@@ -1,4 +1,4 @@
-//! Encoder port: a channel, and its service where the configuration has one; or the port of another protocol in their place.
+//! Encoder port: a channel, with its service if configured; or the port of another protocol.
 //!
 //! ```text
 //! trigger, configuration --> ServiceChannel --> Channel --> EnDat     trigger, configuration --> TFormatPort --> T-format
@@ -6,9 +6,9 @@
 //! host --- Service, RAM <-- io -+---+             +--> results        host --- words ---------------+  +--> results
 //! ```
 //!
-//! What only another protocol has reads 0; EnDat's clock rests HIGH.
+//! Outputs of other protocols read 0; the EnDat clock then rests HIGH.
 //!
-//! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
+//! A design with a separate bus uses this block: everything for one encoder, without a host link.
 
 use crate::endat::channel::Channel;
 use crate::endat::features::{Features, FixedTimes};
@@ -37,7 +37,7 @@ pub struct EncoderPort {
     pub tick_us: Signal<In, Bit>,
     /// Free-running time in system clock cycles.
     pub timestamp: Signal<In, Bits<32>>,
-    /// One-cycle strobe: take a position.
+    /// One-cycle strobe: read a position.
     pub trigger: Signal<In, Bit>,
     /// Strobe: measure the propagation delay again with the next frame.
     pub calibrate: Signal<In, Bit>,
@@ -56,42 +56,42 @@ pub struct EncoderPort {
     pub result: FrameResultOut,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
-    /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
+    /// Tracked propagation delay tD, including synchroniser and filter, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
-    /// A trigger would not be taken.
+    /// A trigger would be lost.
     pub busy: Signal<Out, Bit>,
-    /// The frame under way has the request.
+    /// The frame under way carries the request.
     pub request_runs: Signal<Out, Bit>,
     /// DATA is HIGH, and no frame is on the wire.
     pub line_high: Signal<Out, Bit>,
-    /// Strobe: a trigger has been lost.
+    /// Strobe: a trigger is lost.
     pub trigger_lost: Signal<Out, Bit>,
     /// A frame, triggered or not, has ended.
     #[bundle]
     pub end: FrameEndOut,
-    /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
+    /// Answer of the last request with a separate frame: 8 and 16 bits, or a position or test values from bit 0 on.
     pub reply: Signal<Out, Bits<48>>,
     /// Record of the additional data that follow each position.
     #[bundle]
     pub record: AdditionalDataOut,
-    /// The propagation delay is known: frames run at the full clock, requests may ride.
+    /// The propagation delay is known: frames run at the full clock, and requests may be attached to triggered frames.
     pub calibrated: Signal<Out, Bit>,
     /// Strobe: the data line is sampled for a bit of the answer.
     pub sample_strobe: Signal<Out, Bit>,
-    /// The service's alarm: too many bad frames, or positions 1 and 2 apart; or that of the line: drift or edges beyond their limits.
+    /// Alarm of the service (too many bad frames, or positions 1 and 2 apart) or of the line (drift or edges beyond their limits).
     pub alarm: Signal<Out, Bit>,
     /// The host's access to the words of a port.
     #[bundle]
     pub window: HostWindowIn,
-    /// Port of the service that the program reads or writes; only if the service is outside this port, as the next four.
+    /// Port number that the program reads or writes; only if the service is outside this port, as the next four.
     pub io_address: Vec<Signal<In, Bits<5>>>,
-    /// Strobe: it is read.
+    /// Strobe: the program reads the port.
     pub io_read: Vec<Signal<In, Bit>>,
-    /// In the next cycle what the port had to say, otherwise 0.
+    /// In the next cycle the value of the port; otherwise 0.
     pub io_in: Vec<Signal<Out, Bits<16>>>,
-    /// What is written.
+    /// Value to write.
     pub io_out: Vec<Signal<In, Bits<16>>>,
-    /// Strobe: it is written to the port.
+    /// Strobe: the program writes the port.
     pub io_write: Vec<Signal<In, Bit>>,
     /// EnDat channel; none for another protocol.
     channel: Vec<Channel>,
@@ -105,11 +105,11 @@ pub struct EncoderPort {
     service: Vec<Service>,
     /// Line monitor.
     monitor: Vec<LineMonitor>,
-    /// Cause of a lost trigger; it comes with a good position.
+    /// Cause of a lost trigger; the position is good.
     trigger_overrun: Constant<Bits<5>>,
-    /// Cause of missing additional data; it comes with a good position.
+    /// Cause of missing additional data; the position is good.
     info_missing: Constant<Bits<5>>,
-    /// Cause of a recovery time that was too short; it comes with a good position.
+    /// Cause of a short recovery time; the position is good.
     recovery_too_short: Constant<Bits<5>>,
     _channels: usize,
     _t_formats: usize,
@@ -121,7 +121,7 @@ pub struct EncoderPort {
     _monitors: usize,
 }
 
-/// The port of another protocol than EnDat, if it is one.
+/// The port of another protocol than EnDat.
 #[derive(Default)]
 struct Others {
     /// T-format port, if the encoder speaks T-format.
@@ -131,14 +131,14 @@ struct Others {
 }
 
 impl EncoderPort {
-    /// A port with these fixed times; with a service that initialises and takes requests if `service` is given.
+    /// A port with these fixed times, and with a service that initialises and takes requests if `service` is given.
     /// `wants_short`: the encoder is set to the short recovery time.
     pub fn new(times: FixedTimes, service: Option<&ServiceTimes>, wants_short: bool) -> Self {
         let start = LineStart::default();
         Self::with_line(times, service, wants_short, Features::NONE, start)
     }
 
-    /// The same with the features of `line` that have to do with the line delay, and their settings after reset.
+    /// As [`Self::new`], with the line delay features of `line`, and their settings after reset.
     pub fn with_line(
         times: FixedTimes,
         service: Option<&ServiceTimes>,
@@ -148,7 +148,7 @@ impl EncoderPort {
     ) -> Self {
         let served = Self::served(times, service, wants_short, line, start);
         Self {
-            // Its own service has no use for them.
+            // A service inside the port does not use them.
             io_address: vec![],
             io_read: vec![],
             io_in: vec![],
@@ -161,7 +161,7 @@ impl EncoderPort {
         }
     }
 
-    /// The same for a service outside this port, at the `io_` ports.
+    /// As [`Self::with_line`], with a service outside this port, at the `io_` ports.
     pub fn served(
         times: FixedTimes,
         service: Option<&ServiceTimes>,
@@ -186,10 +186,10 @@ impl EncoderPort {
         )
     }
 
-    /// A port for an encoder that speaks another protocol than EnDat. `has_io`: it is next to a service that it does not use.
+    /// A port for an encoder with another protocol than EnDat. `has_io`: it is connected to a service but does not use it.
     ///
     /// # Panics
-    /// For EnDat, whose ports have settings of their own.
+    /// For EnDat, whose ports have other parameters.
     pub fn speaking(protocol: Protocol, guards: bool, has_io: bool) -> Self {
         let mut others = Others::default();
         match protocol {
@@ -200,7 +200,7 @@ impl EncoderPort {
         Self::of(vec![], others, vec![], vec![], has_io)
     }
 
-    /// The same for the parts of a channel's specification that are not settings.
+    /// As [`Self::speaking`], with the parts of a channel's specification that are not settings.
     ///
     /// # Panics
     /// As [`Self::speaking`].
@@ -370,7 +370,7 @@ impl Logic for EncoderPort {
             connect!(self.monitor[i] <= self; clock, reset);
             connect!(self.monitor[i] <= self.channel[i]; busy, edge_measured, edge_offset);
             self.monitor[i].over.next = self.channel[i].end.over.val();
-            // These come with a good position.
+            // With these causes the position is good.
             self.monitor[i].over_bad.next = self.channel[i].end.over_cause.val().any()
                 & (self.channel[i].end.over_cause.val() != self.trigger_overrun.val())
                 & (self.channel[i].end.over_cause.val() != self.info_missing.val())
@@ -392,7 +392,7 @@ impl Logic for EncoderPort {
         }
     }
 
-    /// What only an EnDat encoder has is at rest.
+    /// Sets the EnDat outputs to their rest levels.
     fn be_without_endat(&mut self) {
         self.line.endat_clk.next = true;
         self.recovery_cycles.next = 0.into();

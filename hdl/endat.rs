@@ -1,4 +1,4 @@
-//! EnDat: the blocks that send a frame and take its answer, and the service that gives encoders what they need.
+//! EnDat: the blocks that send a frame and receive its answer, and the service that maintains an encoder.
 //!
 //! ```text
 //! trigger -> Transaction -> ClockGen ------> endat_clk
@@ -9,7 +9,7 @@
 //!                +-- Receiver -> Crc5 -> Snapshot -> result
 //! ```
 //!
-//! Reading order: [`crate::protocol`] and [`timing`] (facts), then the blocks from left to right in the drawing, [`channel`], [`service`].
+//! Reading order: [`crate::protocol`] and [`timing`] (facts), then the blocks from left to right in the drawing, [`channel`], [`service`]. [`encoder`] is the other end of the line.
 
 pub mod add_info;
 pub mod channel;
@@ -17,6 +17,7 @@ pub mod clock_gen;
 pub mod command_sender;
 pub mod command_shape;
 pub mod crc5;
+pub mod encoder;
 pub mod features;
 pub mod frame_settings;
 pub mod line_delay;

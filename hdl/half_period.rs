@@ -6,8 +6,8 @@
 //! tick      ___________/\____________/\______
 //! ```
 //!
-//! A period of an odd number of cycles has its second half one cycle longer. The comparison is registered, which
-//! is why the counter starts at 2.
+//! A period with an odd number of cycles has a second half that is one cycle longer. The comparison is registered, so
+//! the counter starts at 2.
 
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -21,13 +21,13 @@ pub struct HalfPeriod {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Begins a half with the next cycle; held, it keeps the timer at the beginning.
+    /// Begins a half with the next cycle; while high, it keeps the timer at the beginning.
     pub restart: Signal<In, Bit>,
-    /// With `restart`: the half has begun with this cycle already.
+    /// With `restart`: the half began with this cycle.
     pub began: Signal<In, Bit>,
-    /// Whether this is the second half of the period.
+    /// High in the second half of the period.
     pub second: Signal<In, Bit>,
-    /// The next half is one cycle shorter; for those of at least 4.
+    /// The next half is one cycle shorter; for halves of at least 4 cycles.
     pub shorten: Signal<In, Bit>,
     /// The next half is one cycle longer.
     pub lengthen: Signal<In, Bit>,
@@ -73,7 +73,7 @@ impl Logic for HalfPeriod {
     fn update(&mut self) {
         self.half_cycles.next = self.period_cycles.val().get_bits::<10>(1);
         self.tick_now.next = self.hit.q.val();
-        // Registered, for the clock period may be chosen late.
+        // Registered, because the clock period may be selected late in the cycle.
         self.is_odd.d.next = self.period_cycles.val().get_bit(0);
         if self.second.val() & self.is_odd.q.val() {
             self.tick_now.next = self.hit_late.q.val();
@@ -95,7 +95,7 @@ impl Logic for HalfPeriod {
         }
         if self.restart.val() & self.began.val() {
             self.count.d.next = 3.into();
-            // A half of two cycles is over at once.
+            // A half of two cycles ends at once.
             self.hit.d.next = self.has_snap.val() & (self.half_cycles.val() == 2);
         }
         self.tick.next = self.tick_now.val();

@@ -1,11 +1,11 @@
-//! Input filter: brings the asynchronous data line into the system clock domain and removes short pulses.
+//! Input filter: synchronises the asynchronous data line and removes short pulses.
 //!
 //! ```text
 //! pin --[SyncReg x3]--> majority of 3 --> stable for filter_cycles + 1 samples? --[Reg]--> level, edge_strobe
 //!   \--[FallReg, SyncReg x3]--^   (two samples in each cycle: `level_first` is half a cycle older than `level`)
 //! ```
 //!
-//! The delay it adds is part of the propagation delay that the receiver measures, so it needs no correction.
+//! Its delay is part of the measured propagation delay, so it needs no correction.
 
 use crate::endat::features::Features;
 use rtl_design::reg::{FallReg, Reg, SyncReg};
@@ -24,15 +24,15 @@ pub struct InputFilter {
     pub pin: Signal<In, Bit>,
     /// A pulse of at most this many system clock cycles is ignored; 0 switches the filter off.
     pub filter_cycles: Signal<In, Bits<4>>,
-    /// And half a cycle more; where there are two samples in each cycle.
+    /// Half a cycle more; with two samples in each cycle.
     pub filter_half: Signal<In, Bit>,
-    /// Each sample counts as what most of it and its two neighbours are.
+    /// Each sample is the majority of itself and its two neighbours.
     pub majority: Signal<In, Bit>,
     /// Falling edges count, too.
     pub both_edges: Signal<In, Bit>,
     /// The level after synchroniser and filter.
     pub level: Signal<Out, Bit>,
-    /// The level half a cycle before; `level` unless there are two samples in each cycle.
+    /// The level half a cycle before; equal to `level` with one sample in each cycle.
     pub level_first: Signal<Out, Bit>,
     /// High in the first cycle in which `level` is high, or has changed.
     pub edge_strobe: Signal<Out, Bit>,
@@ -56,13 +56,13 @@ pub struct InputFilter {
     fall4: Vec<SyncReg<Bit>>,
     /// Sample of one cycle ago, for the majority.
     earlier: Reg<Bit>,
-    /// Sample of two cycles ago; with two samples a cycle the one half a cycle before `earlier`.
+    /// Sample of two cycles ago; with two samples in each cycle the one half a cycle before `earlier`.
     earlier_first: Reg<Bit>,
     /// Consecutive samples that differ from the filtered level; 0 when one agrees with it.
     different: Reg<Bits<5>>,
     /// Level after the filter.
     filtered: Reg<Bit>,
-    /// Level after the filter, half a cycle before `filtered`; 0 unless there are two samples a cycle.
+    /// Level after the filter, half a cycle before `filtered`; 0 with one sample in each cycle.
     filtered_first: Reg<Bit>,
     /// High for one cycle when the filtered level has risen; with `both_edges` also when it has fallen.
     edge_found: Reg<Bit>,
@@ -76,11 +76,11 @@ pub struct InputFilter {
     has_double: Constant<Bit>,
     /// Samples in a row that the filter ignores.
     limit: Signal<Local, Bits<5>>,
-    /// First sample of the cycle, as it comes from the synchroniser.
+    /// First sample of the cycle, from the synchroniser.
     first: Signal<Local, Bit>,
     /// First sample of the cycle, after the majority.
     sample_first: Signal<Local, Bit>,
-    /// Sample of the cycle, after the majority; with two samples a cycle the second one.
+    /// Sample of the cycle, after the majority; with two samples in each cycle the second one.
     sample: Signal<Local, Bit>,
     /// Filtered level between the two samples of the cycle.
     middle: Signal<Local, Bit>,

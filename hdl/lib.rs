@@ -5,8 +5,8 @@
 //!                                                                      +-> protocols: a port of another one    <-> line
 //! ```
 //!
-//! A protocol is a folder: [`endat`], and those that [`protocols`] lists. What all of them have is here: [`ports`] (what travels together), [`input_filter`],
-//! [`snapshot`]. [`encoder_port`] is one encoder of either, [`card`] all of them with their host, [`config`] what is asked for, in cycles.
+//! A protocol is a folder: [`endat`], and those that [`protocols`] lists. All protocols share [`ports`] (bundles of ports), [`input_filter`] and
+//! [`snapshot`]. [`encoder_port`] is one encoder of any protocol, [`card`] all of them with their host, [`config`] the configuration in cycles.
 //! [`rtl_design`] has the registers, and turns any block into a typed `Design`.
 
 pub mod card;

@@ -1,12 +1,12 @@
-//! Primary cause of a protocol whose codes are the numbers of its raw flags plus one: the lowest of the flags, since the lowest explains the others.
+//! Primary cause of a protocol whose codes are the raw flag numbers plus one: the lowest flag, because it explains the others.
 
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Picks the lowest flag.
+/// Selects the lowest flag.
 #[derive(LogicBlock, Block)]
 pub struct LowestCause {
-    /// Raw flags, bit n is that of code n + 1.
+    /// Raw flags, bit n for code n + 1.
     pub flags: Signal<In, Bits<16>>,
     /// Number of the lowest plus one; 0 without flags.
     pub cause: Signal<Out, Bits<5>>,

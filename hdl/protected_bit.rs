@@ -1,14 +1,14 @@
-//! Protected bit: a flag that, with guards, one upset does not set.
+//! Protected bit: with guards, a single upset does not set this flag.
 //!
 //! ```text
 //! raise      __/\__________________
 //! clear      ____________/\________
 //! stored     ____/~~~~~~~~~\_______
 //! complement ~~~~\_________/~~~~~~~
-//! is_set     ____/~~~~~~~~~\_______    stored and not complement; both alike: an upset, the bit is cleared (without guards: stored)
+//! is_set     ____/~~~~~~~~~\_______    stored and not complement; both equal: an upset clears the bit (without guards: stored)
 //! ```
 //!
-//! For bits whose upset would start an action without a command: a request sent again, a clock that goes on.
+//! For bits whose upset would start an unintended action, such as a repeated request or a continuous clock.
 
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -21,11 +21,11 @@ pub struct ProtectedBit {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: set it; stronger than `clear`.
+    /// Strobe: set the bit; overrides `clear`.
     pub raise: Signal<In, Bit>,
-    /// Strobe: clear it.
+    /// Strobe: clear the bit.
     pub clear: Signal<In, Bit>,
-    /// It is set.
+    /// The bit is set.
     pub is_set: Signal<Out, Bit>,
     /// High while the bit is set.
     stored: Reg<Bit>,
@@ -37,7 +37,7 @@ pub struct ProtectedBit {
 }
 
 impl ProtectedBit {
-    /// In two registers with guards, in one without.
+    /// Two registers with guards, one without.
     pub fn new(guards: bool) -> Self {
         Self::from_parts(ProtectedBitParts {
             has_guards: Constant::new(guards),

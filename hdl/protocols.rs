@@ -1,5 +1,5 @@
-//! The protocols that a channel may speak. Each is a folder; in addition it has this file, and its place in
-//! [`EncoderPort`](crate::encoder_port::EncoderPort), are all of this crate that knows it by name.
+//! The protocols of a channel. Each is a folder; only this file and
+//! [`EncoderPort`](crate::encoder_port::EncoderPort) name it in this crate.
 
 pub mod ssi;
 pub mod t_format;
@@ -10,10 +10,10 @@ pub use t_format::asked::TFormatSpec;
 use endat_regs::Protocol;
 use std::ops::RangeInclusive;
 
-/// What a channel speaks, with what only that protocol is asked for.
+/// Protocol of a channel, with its specific request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spoken {
-    /// EnDat: what is asked for is the rest of the channel.
+    /// EnDat: the request is the rest of the channel.
     #[default]
     Endat,
     /// T-format.
@@ -22,7 +22,7 @@ pub enum Spoken {
     Ssi(SsiSpec),
 }
 
-/// What EnDat does, or what the other protocol does with what it is asked for.
+/// The expression for EnDat, or that of another protocol with its request.
 macro_rules! of_spoken {
     ($spoken:expr, $endat:expr, $asked:ident => $other:expr) => {
         match $spoken {
@@ -44,7 +44,7 @@ impl Spoken {
         }
     }
 
-    /// What is asked of a T-format channel.
+    /// Request for a T-format channel.
     pub const fn t_format(&self) -> Option<&TFormatSpec> {
         match self {
             Self::TFormat(asked) => Some(asked),
@@ -52,7 +52,7 @@ impl Spoken {
         }
     }
 
-    /// What is asked of a channel that speaks SSI.
+    /// Request for an SSI channel.
     pub const fn ssi(&self) -> Option<&SsiSpec> {
         match self {
             Self::Ssi(asked) => Some(asked),
@@ -60,16 +60,16 @@ impl Spoken {
         }
     }
 
-    /// What a field of `config` that only this protocol has is after reset.
+    /// Value after reset of a field of `config` that only this protocol has.
     pub(crate) fn start(&self, register: &str, field: &str) -> Option<u64> {
         of_spoken!(self, None, asked => asked.start(register, field))
     }
 }
 
-/// Slowest clock of those that have one, in hertz.
+/// Slowest clock of the protocols with a clock, in hertz.
 pub(crate) const CLOCK_HZ_MIN: u64 = ssi::protocol::CLOCK_HZ_MIN;
 
-/// Range of a key that only one of the other protocols has.
+/// Range of a key of one of the other protocols.
 pub(crate) fn range(key: &str) -> Option<RangeInclusive<u64>> {
     [t_format::asked::range, ssi::asked::range]
         .iter()

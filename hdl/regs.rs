@@ -1,4 +1,4 @@
-//! The register table on a card of a configuration: which words it has, and their values after reset.
+//! The register table of a configured card: its words, and their values after reset.
 
 pub use endat_regs::*;
 
@@ -7,7 +7,7 @@ use crate::config::{CardConfig, ChannelConfig, OwnTrigger, PositionRange};
 use crate::endat::line_monitor::LineStart;
 use protocol::MAX_POSITION_BITS;
 
-/// Whether a card of this configuration has a part.
+/// True if a card with this configuration has a part.
 pub fn has(config: &CardConfig, part: Part) -> bool {
     let speaks = |p: &&Protocol| p.row().part == Some(part) && config.speaks(**p);
     match part {
@@ -28,18 +28,18 @@ pub fn has(config: &CardConfig, part: Part) -> bool {
         Part::SecondReceiver => config.safety.second_receiver,
         Part::ErrorTest => config.safety.error_test_ms != 0,
         Part::OwnTrigger => config.own_triggers(),
-        // That of a protocol.
+        // Parts of protocols.
         _ => Protocol::ALL.iter().any(|p| speaks(&p)),
     }
 }
 
-/// The blocks that a card has.
+/// The blocks of a card.
 pub fn blocks(config: &CardConfig) -> impl Iterator<Item = &'static Block> + '_ {
     let is_there = |block: &&Block| block.part.is_none_or(|part| has(config, part));
     BLOCKS.iter().filter(is_there)
 }
 
-/// The words of a block that a card has: what only parts fill that the card does not have is left out.
+/// The words of a block on a card; words of missing parts are left out.
 pub fn present<'a>(
     block: &Block,
     config: &'a CardConfig,
@@ -51,19 +51,19 @@ pub fn present<'a>(
 /// A word of a card.
 #[derive(Clone, Copy, Debug)]
 pub struct Word {
-    /// Its block.
+    /// Block of the word.
     pub block: &'static Block,
-    /// Its place in the block.
+    /// Register of the word.
     pub register: &'static Register,
-    /// The channel whose it is; 0 for words of the card.
+    /// Channel of the word; 0 for words of the card.
     pub channel: usize,
-    /// Its address.
+    /// Word address.
     pub address: u16,
-    /// Value after reset; in RAM it counts only after power-up.
+    /// Value after reset; in RAM only after power-up.
     pub start: u32,
 }
 
-/// All words that a card has.
+/// All words of a card.
 pub fn words(config: &CardConfig) -> Vec<Word> {
     let mut words = Vec::new();
     for block in blocks(config) {
@@ -88,12 +88,12 @@ pub fn words(config: &CardConfig) -> Vec<Word> {
 /// Value of a field after reset; the channel is 0 for words of the card.
 type Start = fn(&CardConfig, usize) -> u64;
 
-/// The channel's start values; zeros for a channel that the card does not have.
+/// The channel's start values; zeros for an absent channel.
 fn of(config: &CardConfig, channel: usize, value: impl Fn(&ChannelConfig) -> u64) -> u64 {
     config.channels.get(channel).map(value).unwrap_or_default()
 }
 
-/// The triggers that a channel takes.
+/// The trigger settings of a channel.
 fn own(channel: &ChannelConfig) -> OwnTrigger {
     channel.spec.trigger.unwrap_or_default()
 }
@@ -102,7 +102,7 @@ fn line(config: &CardConfig) -> LineStart {
     config.line.start(config.system_hz)
 }
 
-/// The parts of a card, a bit for each.
+/// The parts of a card, one bit each.
 fn features(config: &CardConfig) -> u64 {
     let bit = |part: &Part| u64::from(has(config, *part)) << *part as u32;
     Part::ALL.iter().map(bit).sum()
@@ -225,7 +225,7 @@ pub fn start(block: &Block, register: &Register, config: &CardConfig, channel: u
     parts.fold(0, |word, f| word | (value(f) << f.lsb) as u32 & f.mask())
 }
 
-/// The same of a field that is another one in this channel's protocol, or that tells which channels speak one.
+/// Start value of a field with a protocol-specific meaning, or of a field of the word `protocols`.
 fn of_protocol(
     block: &Block,
     register: &Register,

@@ -1,9 +1,9 @@
 //! Snapshot: one result per trigger, changed in one clock cycle, with the last good position held.
 //!
 //! ```text
-//! publish    __/\__________________    position, time stamp and what checks them change places with those before
-//! confirm    ____________/\________    the frame has ended as it should: the result before is discarded
-//! withdraw   ____________/\________    or it has not: the result before comes back
+//! publish    __/\__________________    position, time stamp and check bits are exchanged with the previous ones
+//! confirm    ____________/\________    the frame has ended normally: the previous result is discarded
+//! withdraw   ____________/\________    the frame has failed: the previous result returns
 //! ```
 //!
 //! <!-- without restores -->
@@ -11,8 +11,8 @@
 //!
 //! <!-- end -->
 //! <!-- with has_guards -->
-//! The parity of what is held is taken when it has been loaded, and compared in every cycle from then on. A register that was upset makes
-//! the position invalid, with a cause of its own.
+//! The parity of the held values is stored after loading, and compared in every cycle from then on. A register that was upset makes
+//! the position invalid, with a separate cause.
 //!
 //! <!-- end -->
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
@@ -37,11 +37,11 @@ pub struct Snapshot {
     pub timestamp: Signal<In, Bits<32>>,
     /// Strobe: the first falling edge of a frame, which latches the position in the encoder.
     pub first_fall: Signal<In, Bit>,
-    /// Strobe: the encoder has taken a position by itself, `delay_cycles` ago.
+    /// Strobe: the encoder has latched a position by itself, `delay_cycles` ago.
     pub latched: Signal<In, Bit>,
     /// Propagation delay, in system clock cycles.
     pub delay_cycles: Signal<In, Bits<11>>,
-    /// What has become of a frame.
+    /// Outcome of a frame.
     #[bundle]
     pub told: ToldIn,
     /// Position of the frame.
@@ -57,15 +57,15 @@ pub struct Snapshot {
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
-    /// Strobe: what gave the position takes the one that is held in its place.
+    /// Strobe: the source of the position loads the held position in exchange.
     pub swap: Signal<Out, Bit>,
     /// High for one cycle when a new result can be read.
     strobe: Reg<Bit>,
-    /// High in the first cycle after a good position has been loaded: its parity is taken then.
+    /// High in the first cycle after a good position was loaded: its parity is stored then.
     loaded: Reg<Bit>,
     /// Published position.
     held: Reg<Bits<48>>,
-    /// CRC that came with the published position.
+    /// CRC received with the published position.
     held_crc: Reg<Bits<5>>,
     /// Width of the published position.
     held_width: Reg<Bits<6>>,
@@ -73,15 +73,15 @@ pub struct Snapshot {
     held_f2: Reg<Bit>,
     /// Position before the published one, until the new one is confirmed.
     earlier: Reg<Bits<48>>,
-    /// CRC of the position before.
+    /// CRC of the previous position.
     earlier_crc: Reg<Bits<5>>,
-    /// Width of the position before.
+    /// Width of the previous position.
     earlier_width: Reg<Bits<6>>,
-    /// High if the position before came with F2.
+    /// High if the previous position came with F2.
     earlier_f2: Reg<Bit>,
-    /// High if there was a valid position before.
+    /// High if the previous position was valid.
     earlier_valid: Reg<Bit>,
-    /// Parity of the position before.
+    /// Parity of the previous position.
     earlier_parity: Reg<Bit>,
     /// High from a good result until its frame is confirmed or withdrawn.
     unconfirmed: Reg<Bit>,
@@ -91,17 +91,17 @@ pub struct Snapshot {
     timed: Reg<Bit>,
     /// Parity of the pending time stamp, stored when it was taken.
     pending_parity: Reg<Bit>,
-    /// Parity of the pending time stamp as it was in the cycle before.
+    /// Parity of the pending time stamp in the cycle before.
     pending_sum: Reg<Bit>,
     /// High if the published position or its time stamp differed from its parity in the cycle before.
     is_upset: Reg<Bit>,
-    /// High while a position is published that can be used.
+    /// High while a valid position is published.
     valid: Reg<Bit>,
     /// High if the last result brought a good position.
     is_fresh: Reg<Bit>,
     /// Number of results, wrapping.
     count: Reg<Bits<16>>,
-    /// Time stamp of the frame under way; where the position before can come back, its stamp from a result to the end of the frame.
+    /// Time stamp of the frame under way; from a result to the end of the frame that of the previous position, if it can return.
     stamp_pending: Reg<Bits<32>>,
     /// Time stamp of the published position.
     stamp: Reg<Bits<32>>,
@@ -121,25 +121,25 @@ pub struct Snapshot {
     take_good: Signal<Local, Bit>,
     /// High for one cycle when the published position is withdrawn.
     take_back: Signal<Local, Bit>,
-    /// Parity of the published time stamp as it is stored now.
+    /// Parity of the published time stamp as stored.
     stamp_sum: Signal<Local, Bit>,
-    /// Parity of the published position, with its CRC, width, F2 and time stamp, as stored now.
+    /// Parity of the published position, with its CRC, width, F2 and time stamp, as stored.
     parity_now: Signal<Local, Bit>,
     /// High if an upset makes the published position invalid in this cycle.
     upset_now: Signal<Local, Bit>,
     /// High if the pending time stamp differs from its parity when a good position comes.
     pending_wrong: Signal<Local, Bit>,
-    /// Cycles since the position was taken: the line delay if the encoder took it by itself, else 0.
+    /// Cycles since the position was latched: the line delay if the encoder latched it by itself, else 0.
     ago: Signal<Local, Bits<11>>,
-    /// Age that is shown: 0 while the position is not confirmed and can come back.
+    /// Age at the output: 0 while the position is not confirmed and the previous one can return.
     age_now: Signal<Local, Bits<16>>,
     /// 1 if stored positions are checked against their parity.
     has_guards: Constant<Bit>,
-    /// 1 if a withdrawn position gives way to the one before.
+    /// 1 if the previous position replaces a withdrawn one.
     restores: Constant<Bit>,
-    /// 1 if the source of the position keeps the one before, in exchange.
+    /// 1 if the source of the position stores the previous one, in exchange.
     swaps: Constant<Bit>,
-    /// 1 if the position before is kept here.
+    /// 1 if this block stores the previous position.
     keeps: Constant<Bit>,
     /// 1 if positions are never withdrawn.
     never_withdraws: Constant<Bit>,
@@ -151,23 +151,23 @@ pub struct Snapshot {
     upset_flag: Constant<Bits<20>>,
 }
 
-/// What becomes of a published position that the encoder withdraws.
+/// Treatment of a published position that the encoder withdraws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Withdrawal {
-    /// The position before it comes back, with its time stamp; it is kept here meanwhile.
+    /// The previous position returns, with its time stamp; this block stores it meanwhile.
     Restores,
-    /// The same, but the receiver's word keeps it: the two change places.
+    /// The previous position returns; the receiver's word stores it in exchange.
     Swaps,
     /// No position is valid.
     Clears,
-    /// The same of a protocol that confirms none: each one may be withdrawn until the next result.
+    /// No position is valid. The protocol has no confirmation: each position may be withdrawn until the next result.
     ClearsLate,
-    /// The protocol withdraws none: everything that is wrong is known when the result comes.
+    /// Positions are never withdrawn: all faults are known when the result comes.
     Never,
 }
 
 impl Snapshot {
-    /// For a protocol with this cause and this flag for a stored bit that was upset; `guards` look for such bits.
+    /// A snapshot with this cause and flag for an upset of a stored bit; `guards` check for such upsets.
     pub fn new(withdrawal: Withdrawal, guards: bool, upset_cause: u64, upset_flag: u64) -> Self {
         Self::from_parts(SnapshotParts {
             has_guards: Constant::new(guards),
@@ -188,7 +188,7 @@ impl Snapshot {
 #[kernel]
 impl Logic for Snapshot {
     fn update(&mut self) {
-        // The time stamp waits for its position as long as a frame lasts: a guard looks at it, too.
+        // The time stamp waits for its position during a whole frame, so a guard checks it, too.
         self.timed.d.next = self.first_fall.val() | self.latched.val();
         if self.timed.q.val() {
             self.pending_parity.d.next = self.stamp_pending.q.val().xor();
@@ -207,14 +207,14 @@ impl Logic for Snapshot {
         if self.latched.val() {
             self.ago.next = self.delay_cycles.val();
         }
-        // Between a result and the end of its frame `stamp_pending` keeps the time stamp of the position before.
+        // Between a result and the end of its frame `stamp_pending` stores the time stamp of the previous position.
         if self.restores.val() & self.take_good.val() {
             self.stamp_pending.d.next = self.stamp.q.val();
         }
         if self.first_fall.val() | self.latched.val() {
             self.stamp_pending.d.next = self.timestamp.val() - bit_cast::<32, 11>(self.ago.val());
         }
-        // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look young.
+        // The age of a position that may return continues until the new one is confirmed, so that a series of withdrawn positions cannot make it look fresh.
         self.age_full.d.next = self.age.q.val().all();
         if self.tick_us.val() & !self.age_full.q.val() {
             self.age.d.next = self.age.q.val() + 1;
@@ -264,7 +264,7 @@ impl Logic for Snapshot {
             self.unconfirmed.d.next = true;
         }
 
-        // The guard. In the first cycle it checks the time stamp that has just been loaded against the parity of the pending one; the CRC has
+        // The guard. In the first cycle it checks the time stamp that was just loaded against the parity of the pending one; the CRC has
         // checked the position.
         self.stamp_sum.next = self.stamp.q.val().xor();
         self.parity_now.next = self.held.q.val().xor()

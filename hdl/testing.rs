@@ -1,11 +1,11 @@
-//! Runs a block in a unit test: one clock edge at a time, with a plain settle loop instead of rust-hdl's threads.
+//! Runs a block in a unit test: one clock edge at a time, with a settle loop instead of rust-hdl's threads.
 
 use rust_hdl::prelude::*;
 
-/// Lets combinational logic settle.
+/// Settles the combinational logic.
 ///
 /// # Panics
-/// If it does not within 50 passes: a combinational loop.
+/// If it does not settle within 50 passes: a combinational loop.
 pub fn settle<B: Block>(uut: &mut B) {
     for _ in 0..50 {
         uut.update_all();

@@ -7,21 +7,21 @@ use Access::{ReadOnly, ReadWrite, Strobe};
 /// Offset of the first of the stream's four words.
 const STREAM_FIRST: u8 = 12;
 
-/// Which channels speak what, and what else there is.
+/// Word `protocols`: which protocol each channel speaks, and features beyond the first word.
 const PROTOCOLS: &[Field] = &protocols::fields::<{ Protocol::ALL.len() + 1 }>(&[
     field(
         "stream_additional_data",
         8,
         1,
         "",
-        "1: sets of the stream have the additional data",
+        "1: stream sets include additional data",
     ),
     field(
         "features",
         16,
         8,
         "",
-        "Parts that have no place in capabilities.features",
+        "Features that do not fit into capabilities.features",
     )
     .bits(MORE_FEATURES),
 ]);
@@ -58,7 +58,7 @@ pub const CARD: Block = Block {
             "capabilities",
             2,
             ReadOnly,
-            "What this card has.",
+            "Features of this card.",
             &[
                 field("channels", 0, 8, "", "Encoder ports"),
                 field("max_position_bits", 8, 8, "bits", "Widest position"),
@@ -76,51 +76,51 @@ pub const CARD: Block = Block {
             "configuration_hash",
             4,
             ReadOnly,
-            "Tells which configuration the card was generated from.",
+            "Hash of the configuration from which the card was generated.",
             &[field(
                 "value",
                 0,
                 32,
                 "",
-                "First 8 digits of the hash that stands in the generated files",
+                "First 8 digits of the configuration hash in the generated files",
             )],
         ),
         word(
             "protocols",
             5,
             ReadOnly,
-            "Which channels speak another protocol than EnDat, what sets of the stream have, and further parts.",
+            "Channels with another protocol than EnDat, content of stream sets, further features.",
             PROTOCOLS,
         ),
         word(
             "trigger_count",
             8,
             ReadOnly,
-            "Triggers since reset; stands still with the results (see hold).",
+            "Triggers since reset; frozen while the results are held (see hold).",
             &[field("value", 0, 32, "", "Wraps")],
         ),
         word(
             "trigger_now",
             9,
             Strobe,
-            "Triggers all channels that take it, if sources allows it.",
+            "Triggers all channels that accept it, if sources enables the register.",
             &[field("trigger", 0, 1, "", "Write 1")],
         ),
         word(
             "calibrate",
             10,
             Strobe,
-            "Makes channels measure their line delay again, with their next frame.",
+            "Channels measure their line delay again with their next frame.",
             &[field("channels", 0, 8, "", "Bit n for channel n")],
         ),
         word(
             "stream_control",
             STREAM_FIRST,
             ReadWrite,
-            "What the stream of sample sets does.",
+            "Enables of the sample stream.",
             &[
-                field("collect", 0, 1, "", "Triggers make sets"),
-                field("push", 1, 1, "", "Frames go out over the UART"),
+                field("collect", 0, 1, "", "1: triggers produce sets"),
+                field("push", 1, 1, "", "1: the UART sends frames"),
             ],
         )
         .of(Part::Stream),
@@ -128,9 +128,9 @@ pub const CARD: Block = Block {
             "stream_state",
             STREAM_FIRST + 1,
             ReadOnly,
-            "What is in the stream's buffer, and what did not get in.",
+            "Fill level of the stream buffer, and lost sets.",
             &[
-                field("bytes", 0, 16, "bytes", "Bytes that wait"),
+                field("bytes", 0, 16, "bytes", "Bytes in the buffer"),
                 field("lost", 16, 16, "", "Sets lost since clear; stops at 65535"),
             ],
         )
@@ -139,13 +139,13 @@ pub const CARD: Block = Block {
             "stream_data",
             STREAM_FIRST + 2,
             ReadOnly,
-            "Takes the next bytes of the stream out of the buffer.",
+            "Reads and removes the next bytes of the stream from the buffer.",
             &[field(
                 "bytes",
                 0,
                 32,
                 "",
-                "First byte in bits 31..24; what is not there is 0",
+                "First byte in bits 31..24; missing bytes read 0",
             )],
         )
         .of(Part::Stream),
@@ -153,7 +153,7 @@ pub const CARD: Block = Block {
             "stream_clear",
             STREAM_FIRST + 3,
             Strobe,
-            "Empties the buffer, forgets what was lost.",
+            "Empties the buffer and clears stream_status.lost.",
             &[field("clear", 0, 1, "", "Write 1")],
         )
         .of(Part::Stream),

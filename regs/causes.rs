@@ -1,8 +1,8 @@
-//! Causes: why a frame or an exchange gave no position, or what there is to say about it. One row has all that is known of a cause.
+//! Causes: why a frame or an exchange gave no position, or which remark it has. Each row describes one cause.
 //!
-//! Each protocol has codes of its own, in 5 bits of a result: a new cause is a row, and renumbers none of the other protocol. Who reads them knows
-//! which protocol the channel speaks (`card.protocols`). Programs take them as numbers of one list ([`number`]): EnDat's codes, then
-//! what each other protocol has of its own.
+//! Each protocol has its own codes, in 5 bits of a result, so a new cause adds a row and does not renumber those of another protocol.
+//! The host learns the protocol of a channel from `card.protocols`. Programs use the numbers of one list ([`number`]): EnDat's codes,
+//! then the additional causes of each other protocol.
 
 pub(crate) mod cause;
 pub mod endat;
@@ -17,7 +17,7 @@ use crate::Named;
 /// Causes of EnDat, under the codes of a result.
 pub const ENDAT: &[Named] = endat::CODED;
 
-/// EnDat's code of a cause that both have; without one it does not compile.
+/// EnDat's code of a shared cause; compilation fails if EnDat has no such cause.
 const fn code_in_endat(name: &str) -> u8 {
     let mut row = 0;
     while !is_same(endat::ALL[row].name, name) {
@@ -26,8 +26,8 @@ const fn code_in_endat(name: &str) -> u8 {
     endat::ALL[row].code as u8
 }
 
-/// Number of a protocol's code in the list of all protocols: what it shares with EnDat has EnDat's code, its own stand behind those of
-/// the protocols before it.
+/// Number of a protocol's code in the list of all protocols. Shared causes have EnDat's code; the others follow those of the
+/// protocols before it.
 pub const fn number(code: u8, protocol: Protocol) -> u8 {
     let causes = protocol.row().causes;
     // Each protocol's rows are in the order of their codes.
@@ -76,7 +76,7 @@ pub fn of(number: u8) -> Option<&'static Named> {
     ALL.iter().find(|cause| cause.number == number.into())
 }
 
-/// What the cause of that name means for a user, and what to do about it.
+/// Meaning and remedy of the cause with this name.
 pub fn advice(name: &str) -> Option<[&'static str; 2]> {
     let mut all = Protocol::ALL.iter().flat_map(|p| p.row().causes);
     all.find(|cause| cause.name == name && cause.advice.is_some())?
@@ -87,7 +87,7 @@ pub fn advice(name: &str) -> Option<[&'static str; 2]> {
 mod tests {
     use super::*;
 
-    /// Catches a row out of its order, a code that does not fit a result, a shared cause without EnDat's row.
+    /// Catches a row in the wrong place, a code that does not fit into a result, and a shared cause without a row in EnDat.
     #[test]
     fn every_code_of_a_result_has_a_name_and_advice() {
         for protocol in Protocol::ALL {

@@ -1,4 +1,4 @@
-//! The register table: the one place that says which word and bit means what.
+//! The register table: defines the meaning of every word and bit.
 //!
 //! ```text
 //! 0x000  card: identification, capabilities, counters, strobes
@@ -12,8 +12,8 @@
 //! 0x400  service: 128 words of channel n at 0x400 + 128 n
 //! ```
 //!
-//! Offsets count 32-bit words. Blocks and kernels of the card, the maps that come with it and the host library read this table; within a
-//! major version an offset never moves. Plain data: it knows neither hardware nor configuration.
+//! Offsets count 32-bit words. The card's blocks and kernels, the register maps and the host library read this table. An offset never moves
+//! within a major version. The table is plain data, independent of hardware and configuration.
 
 #![cfg_attr(not(test), no_std)]
 
@@ -52,41 +52,41 @@ pub use register::{Access, Block, Field, Register};
 pub use result::{EVIDENCE_FLAGS, INFO_FIRST, LINE_FLAGS, RESULT};
 pub use service::SERVICE;
 
-/// Major, minor and patch version of the register map; minor rises with each word or field that is added (`regs/tests.rs` checks it).
+/// Major, minor and patch version of the register map; each added word or field raises minor (`regs/tests.rs` checks it).
 pub const VERSION: [u8; 3] = [1, 1, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the interrupt.
 pub const INTERRUPT_BASE: u16 = 0x010;
-/// First word of the recovery counters; block n is that of channel n.
+/// First word of the recovery counters; block n belongs to channel n.
 pub const RECOVERY_BASE: u16 = 0x040;
-/// First word of the direct outputs; block n is that of channel n.
+/// First word of the direct outputs; block n belongs to channel n.
 pub const DIRECT_BASE: u16 = 0x080;
-/// First word of the T-format ports; block n is that of channel n.
+/// First word of the T-format ports; block n belongs to channel n.
 pub const T_FORMAT_BASE: u16 = 0x0C0;
-/// First word of the configuration blocks; block 0 is the card's, block n + 1 that of channel n.
+/// First word of the configuration blocks; block 0 belongs to the card, block n + 1 to channel n.
 pub const CONFIG_BASE: u16 = 0x100;
-/// First word of the result blocks; block n is that of channel n.
+/// First word of the result blocks; block n belongs to channel n.
 pub const RESULT_BASE: u16 = 0x180;
-/// First word of the line blocks; block n is that of channel n.
+/// First word of the line blocks; block n belongs to channel n.
 pub const LINE_BASE: u16 = 0x200;
 /// Words from one line block to the next.
 pub const LINE_STRIDE: u16 = 64;
-/// First word of the service blocks; block n is that of channel n.
+/// First word of the service blocks; block n belongs to channel n.
 pub const SERVICE_BASE: u16 = 0x400;
-/// Words from one block to the next, but for lines and services.
+/// Words from one block to the next, except for lines and services.
 pub const BLOCK_STRIDE: u16 = 8;
-/// Most channels that the map and the decoder take.
+/// Most channels that map and decoder support.
 pub const CHANNELS_MAX: usize = 8;
 
 /// Bytes of a word.
 pub const WORD_BYTES: u32 = 4;
-/// Bytes that the largest map takes.
+/// Size of the largest map in bytes.
 pub const MAP_BYTES: u32 =
     WORD_BYTES * (SERVICE_BASE as u32 + SERVICE.stride as u32 * CHANNELS_MAX as u32);
 
-/// Words of the burst that gives the results of all channels of one moment, from [`RESULT_BASE`] on; the words between
-/// two blocks are read too. With requests each result has its additional data.
+/// Words of the burst that reads the results of all channels at one instant, from [`RESULT_BASE`] on. It includes the words between two blocks,
+/// and with requests the additional data of each result.
 pub const fn result_words(channels: usize, requests: bool) -> u64 {
     let blocks_before = channels.saturating_sub(1) as u64;
     let words = if requests {

@@ -1,13 +1,13 @@
-//! The line monitor of a channel: phase of its samples, and how much margin they have.
+//! The line monitor of a channel: sampling phase and timing margin.
 
 use crate::part::Part;
 use crate::{field, word, Access, Block, Field, Register, LINE_BASE, LINE_STRIDE};
 use word as at;
 use Access::{ReadOnly, ReadWrite, Strobe};
 
-/// Where the words of a monitor are.
+/// Addresses of the monitor's words.
 pub mod word {
-    /// Histogram of the offsets, -16 and before to 15 and after.
+    /// Histogram of the offsets: first bin -16 or less, last bin 15 or more.
     pub const HISTOGRAM: u8 = 0;
     /// Source of the phase, majority, bin width.
     pub const ALIGNMENT: u8 = 32;
@@ -15,7 +15,7 @@ pub mod word {
     pub const FIXED_DELAY: u8 = 33;
     /// Limits of the alarms.
     pub const LIMITS: u8 = 34;
-    /// Clears.
+    /// Strobes that clear.
     pub const CLEAR: u8 = 35;
     /// Offsets of the last frame.
     pub const FRAME: u8 = 40;
@@ -32,9 +32,9 @@ pub mod word {
 /// Sources of the phase.
 pub mod mode {
     crate::named::codes! {
-        /// All of them.
+        /// All modes.
         ALL: u64;
-        TRACKED = 0, "tracked", "mean over many edges";
+        TRACKED = 0, "tracked", "mean of many edges";
         FIXED = 1, "fixed", "fixed_delay";
         FRAME = 2, "frame", "start bit of each frame";
     }
@@ -46,13 +46,13 @@ const fn bin(name: &'static str, index: u8, meaning: &'static str) -> Register {
     word(name, at::HISTOGRAM + index, ReadOnly, meaning, EDGES).of(Part::Margin)
 }
 
-/// Phase of the samples, and how much margin they have.
+/// Sampling phase and timing margin.
 pub const LINE: Block = Block {
     name: "line",
     base: LINE_BASE,
     stride: LINE_STRIDE,
     per_channel: true,
-    meaning: "Phase of the samples, and how much margin they have. A place is a system clock cycle, or half of one with double_edge; offsets are signed.",
+    meaning: "Sampling phase and timing margin. A place is a system clock cycle, or half of one with double_edge; offsets are signed.",
     is_ram: false,
     part: Some(Part::Alignment),
     registers: &[
@@ -88,19 +88,19 @@ pub const LINE: Block = Block {
         bin("edges_29", 29, "Edges with offset 13."),
         bin("edges_30", 30, "Edges with offset 14."),
         bin("edges_31", 31, "Edges with offset 15 or more."),
-        word("alignment", at::ALIGNMENT, ReadWrite, "Source of the phase; taken over between two frames.", &[
-            field("mode", 0, 2, "", "Where the phase of the samples comes from").codes(mode::ALL),
-            field("majority", 4, 1, "", "Each sample is the majority of itself and its neighbours; measure the delay again after a change"),
+        word("alignment", at::ALIGNMENT, ReadWrite, "Source of the phase; takes effect between two frames.", &[
+            field("mode", 0, 2, "", "Source of the sampling phase").codes(mode::ALL),
+            field("majority", 4, 1, "", "Each sample is the majority of itself and its two neighbours; measure the delay again after a change"),
             field("bin_shift", 8, 2, "", "Bins of the histogram are 2^bin_shift places wide; clear after a change"),
         ]),
-        word("fixed_delay", at::FIXED_DELAY, ReadWrite, "Delay in mode fixed, synchroniser and filter included.", &[
-            field("value", 0, 15, "cycles/16", "As phase.tracked shows it"),
+        word("fixed_delay", at::FIXED_DELAY, ReadWrite, "Delay in mode fixed, including synchroniser and filter.", &[
+            field("value", 0, 15, "cycles/16", "In the format of phase.tracked"),
         ]),
         word("limits", at::LIMITS, ReadWrite, "Limits of the alarms; 0 = none.", &[
-            field("drift", 0, 12, "cycles/16", "Most that the tracked delay may be from its reference"),
-            field("offset", 16, 7, "places", "Most that an edge may be from its expected place"),
+            field("drift", 0, 12, "cycles/16", "Largest allowed distance of the tracked delay from its reference"),
+            field("offset", 16, 7, "places", "Largest allowed offset of an edge"),
         ]),
-        word("clear", at::CLEAR, Strobe, "Clears, or takes a new reference.", &[
+        word("clear", at::CLEAR, Strobe, "Clears the monitor, or sets the reference.", &[
             field("clear", 0, 1, "", "Write 1: histogram, worst edges, alarms, counters"),
             field("reference", 1, 1, "", "Write 1: the tracked delay becomes the reference"),
         ]),
@@ -109,19 +109,19 @@ pub const LINE: Block = Block {
             field("latest", 8, 8, "places", "Largest offset"),
             field("start", 16, 8, "places", "Offset of the start bit's edge"),
         ]).of(Part::Margin),
-        word("worst", at::WORST, ReadOnly, "Edges since clear.", &[
+        word("worst", at::WORST, ReadOnly, "Extreme edges since clear.", &[
             field("earliest", 0, 8, "places", "Smallest offset"),
             field("latest", 8, 8, "places", "Largest offset"),
-            field("valid", 16, 1, "", "There were edges"),
-            field("drift_alarm", 24, 1, "", "The drift has been beyond its limit"),
-            field("offset_alarm", 25, 1, "", "An edge has been beyond its limit"),
+            field("valid", 16, 1, "", "At least one edge was measured"),
+            field("drift_alarm", 24, 1, "", "The drift exceeded its limit"),
+            field("offset_alarm", 25, 1, "", "An edge exceeded its limit"),
         ]).of(Part::Margin),
-        word("phase", at::PHASE, ReadOnly, "Tracked delay, synchroniser and filter included.", &[
+        word("phase", at::PHASE, ReadOnly, "Tracked delay, including synchroniser and filter.", &[
             field("tracked", 0, 15, "cycles/16", "Mean place of the edges after their clock edge"),
-            field("reference", 16, 15, "cycles/16", "What it was when it had been measured"),
+            field("reference", 16, 15, "cycles/16", "Tracked delay when it was measured or last set as reference"),
         ]),
         word("counts", at::COUNTS, ReadOnly, "Counters, wrapping.", &[
-            field("glitches", 0, 16, "", "Pulses that the input filter has removed since clear"),
+            field("glitches", 0, 16, "", "Pulses removed by the input filter since clear"),
             field("bad_frames", 16, 16, "", "Frames with a cause other than 0 since clear"),
         ]).of(Part::Margin),
         word("frames", at::FRAMES, ReadOnly, "Frames since clear, wrapping.", &[

@@ -1,24 +1,24 @@
-//! Numbers and bits that stand for something.
+//! Named numbers and bits.
 
 /// A number, or a bit, with a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Named {
     /// Name, unique in its field; small letters, digits and underscores.
     pub name: &'static str,
-    /// The field's number; of a bit its place, counted from the field's lowest bit.
+    /// The field's number; for a bit its index from the field's lowest bit.
     pub number: u32,
-    /// What it stands for.
+    /// Meaning.
     pub meaning: &'static str,
 }
 
-/// How the content of a field is to be read.
+/// Kind of content of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Values {
-    /// As a number, or as bits that the field's meaning explains.
+    /// A number, or bits that the field's meaning explains.
     Plain,
-    /// Each of these numbers has a meaning of its own.
+    /// A code; each number has a name and meaning.
     Codes(&'static [Named]),
-    /// Each of these bits has a meaning of its own.
+    /// Bits with a name and meaning each.
     Bits(&'static [Named]),
 }
 
@@ -31,7 +31,7 @@ pub(crate) const fn named(name: &'static str, number: u32, meaning: &'static str
     }
 }
 
-/// Codes as constants and as a list, from one row for each: `CONSTANT = number, "name", "meaning";`.
+/// Makes constants and a list from one row for each code: `CONSTANT = number, "name", "meaning";`.
 macro_rules! codes {
     ($(#[$doc:meta])* $list:ident: $number:ty; $($constant:ident = $code:literal, $name:literal, $meaning:literal;)*) => {
         $(

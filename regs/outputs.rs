@@ -7,19 +7,19 @@ use crate::{
 };
 use Access::{ReadOnly, ReadWrite, Strobe};
 
-/// What sets a bit of a channel in the interrupt's status.
+/// Events that set a bit of a channel in the interrupt status.
 pub const INTERRUPT_EVENTS: &[Named] = &[
     named("result", 0, "a new result"),
     named(
         "error",
         1,
-        "a result whose cause is one of direct.error_causes",
+        "a result with one of the causes in direct.error_causes",
     ),
-    named("alarm", 2, "the alarm has come on"),
-    named("request", 3, "the frame of a request has ended"),
+    named("alarm", 2, "the alarm was set"),
+    named("request", 3, "the frame of a request ended"),
 ];
 
-/// The events of all channels.
+/// The event fields of all channels.
 const EVENTS: &[Field] = &[
     events("channel_0", 0),
     events("channel_1", 1),
@@ -44,7 +44,7 @@ const fn all_events(
     word(name, offset, access, meaning, EVENTS)
 }
 
-/// Causes that are errors after reset: all but 0, which is the alarm's.
+/// Causes that count as errors after reset: all except bit 0, which is the alarm.
 pub const ERROR_CAUSES: u32 = !1;
 
 /// Interrupt.
@@ -53,22 +53,17 @@ pub const INTERRUPT: Block = Block {
     base: INTERRUPT_BASE,
     stride: BLOCK_STRIDE,
     per_channel: false,
-    meaning: "Interrupt: irq_o is high while a bit of status is set that is set in mask, too.",
+    meaning: "Interrupt: irq_o is high while a bit is set in both status and mask.",
     is_ram: false,
     part: Some(Part::Interrupt),
     registers: &[
-        all_events(
-            "status",
-            0,
-            ReadOnly,
-            "What has happened since it was cleared.",
-        ),
-        all_events("mask", 1, ReadWrite, "What makes irq_o high."),
+        all_events("status", 0, ReadOnly, "Events since cleared."),
+        all_events("mask", 1, ReadWrite, "Events that assert irq_o."),
         all_events(
             "clear",
             2,
             Strobe,
-            "Clears the bits of status that are written 1; an event of the same cycle stays.",
+            "Clears the bits of status that are written 1; an event in the same cycle remains.",
         ),
     ],
 };
@@ -79,7 +74,7 @@ pub const DIRECT: Block = Block {
     base: DIRECT_BASE,
     stride: BLOCK_STRIDE,
     per_channel: true,
-    meaning: "Direct outputs of a channel: where its position is cropped, and what is an error.",
+    meaning: "Direct outputs of a channel: position slice and selection of errors.",
     is_ram: false,
     part: Some(Part::Direct),
     registers: &[
@@ -87,7 +82,7 @@ pub const DIRECT: Block = Block {
             "crop",
             0,
             ReadWrite,
-            "Which bits of the position come out; taken over with the next result.",
+            "Position bits at the output; takes effect with the next result.",
             &[
                 field(
                     "first_bit",
@@ -101,7 +96,7 @@ pub const DIRECT: Block = Block {
                     8,
                     6,
                     "bits",
-                    "How many bits, 0..32; zeros above",
+                    "Number of bits, 0..32; upper bits are 0",
                 ),
             ],
         ),
@@ -109,13 +104,13 @@ pub const DIRECT: Block = Block {
             "error_causes",
             1,
             ReadWrite,
-            "What makes direct_error_o high: bit k for cause k, bit 0 for the channel's alarm.",
+            "Causes that assert direct_error_o: bit k for cause k, bit 0 for the channel's alarm.",
             &[field(
                 "causes",
                 0,
                 32,
                 "",
-                "Selected causes of the last result",
+                "Causes counted as errors, judged at the last result",
             )],
         ),
     ],

@@ -1,12 +1,12 @@
-//! Parts that a card may have, as `capabilities.features` and `protocols.features` tell them.
+//! Optional parts of a card, as `capabilities.features` and `protocols.features` report them.
 
 use crate::named::named;
 use crate::Named;
 
-/// `Variant = bit, "name", "meaning", "where a configuration asks for it";`
+/// `Variant = bit, "name", "meaning", "configuration table and key";`
 macro_rules! parts {
     ($($variant:ident = $bit:literal, $name:literal, $meaning:literal, $switch:literal;)*) => {
-        /// A part of a card; its number is its bit.
+        /// Part of a card; the number is its bit.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Part {
             $(
@@ -16,10 +16,10 @@ macro_rules! parts {
         }
 
         impl Part {
-            /// All of them, lowest bit first.
+            /// All parts, lowest bit first.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// Table and key of a configuration that ask for it; empty if every card has it.
+            /// Table and key that select it in a configuration; empty if every card has it.
             pub const fn switch(self) -> &'static str {
                 match self {
                     $(Self::$variant => $switch,)*
@@ -40,21 +40,21 @@ parts! {
     Initialise = 5, "initialise", "initialisation", "[service] parts";
     Diagnosis = 6, "diagnosis", "diagnosis of the line", "[service] parts";
     Continuous = 7, "continuous", "continuous clock", "[service] parts";
-    Alignment = 8, "alignment", "phase at the host's choice, mean over many edges", "[line] parts";
-    Margin = 9, "margin", "margin of the samples", "[line] parts";
-    DoubleEdge = 10, "double_edge", "DATA on both edges of the system clock", "[line] parts";
+    Alignment = 8, "alignment", "selectable sampling phase, mean of many edges", "[line] parts";
+    Margin = 9, "margin", "timing margin of the samples", "[line] parts";
+    DoubleEdge = 10, "double_edge", "DATA sampled on both edges of the system clock", "[line] parts";
     Stream = 11, "stream", "stream of sample sets", "[stream]";
     Direct = 12, "direct", "direct outputs", "[outputs] parts";
     Interrupt = 13, "interrupt", "interrupt", "[outputs] parts";
     TFormat = 14, "t_format", "T-format channels", "[[channel]] protocol = \"t_format\"";
-    OwnTrigger = 15, "own_trigger", "enable, divider and sources of triggers of each channel", "[[channel]] trigger";
-    RecoveryCounter = 16, "recovery_counter", "recovery time measured a second time", "[safety] parts";
-    SecondInterface = 17, "second_interface", "results for a second controller, over an SPI that can only be read", "[safety] parts";
+    OwnTrigger = 15, "own_trigger", "enable, divider and trigger sources for each channel", "[[channel]] trigger";
+    RecoveryCounter = 16, "recovery_counter", "recovery time measured independently", "[safety] parts";
+    SecondInterface = 17, "second_interface", "results for a second controller, over a read-only SPI", "[safety] parts";
     SecondReceiver = 18, "second_receiver", "second receiver in lockstep", "[safety] parts";
     ErrorTest = 19, "error_test", "forced errors on a schedule", "[safety] parts";
 }
 
-/// Parts that have a bit in `capabilities.features`; those behind them have one in `protocols.features`.
+/// Number of parts with a bit in `capabilities.features`; the rest have one in `protocols.features`.
 pub const FEATURES_BITS: usize = 16;
 /// Bits of `capabilities.features`.
 pub const FEATURES: &[Named] = ALL_FEATURES.split_at(FEATURES_BITS).0;
@@ -73,7 +73,7 @@ const fn more_features() -> [Named; ALL_FEATURES.len() - FEATURES_BITS] {
 }
 
 impl Part {
-    /// Its name and its meaning.
+    /// Name and meaning.
     pub const fn named(self) -> Named {
         ALL_FEATURES[self as usize]
     }

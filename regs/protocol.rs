@@ -9,19 +9,19 @@ use crate::Named;
 
 /// A 6-bit mode command, sent MSB first; the names are the encoder's view.
 ///
-/// The right triplet of the code repeats the left one: complemented in the 2.1 commands and in `111000`, as it is in the 2.2
-/// commands that are followed by a supplement, and in `010010`. So an encoder can refuse a spoilt command.
+/// The right triplet of the code repeats the left one. It is complemented in the 2.1 commands, in `111000` and in `010010`, and also in the 2.2
+/// commands with a supplement. So an encoder can reject a corrupted command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ModeCommand {
     /// `000111`: send position (EnDat 2.1 frame: start, F1, position, CRC).
     SendPosition,
     /// `001110`: select a memory area; the answer repeats MRS code and data.
     SelectMemory,
-    /// `011100`: receive parameter: writes a word; the answer repeats address and data.
+    /// `011100`: receive parameter, writes a word; the answer repeats address and data.
     ReceiveParameter,
-    /// `100011`: send parameter: reads a word.
+    /// `100011`: send parameter, reads a word.
     SendParameter,
-    /// `101010`: receive reset: like a power cycle.
+    /// `101010`: receive reset, like a power cycle.
     ReceiveReset,
     /// `010101`: send test values: F1 and 40 bits.
     SendTestValues,
@@ -29,15 +29,15 @@ pub enum ModeCommand {
     ReceiveTestCommand,
     /// `111000`: send position (EnDat 2.2 frame: start, F1, F2, position, CRC), then any selected additional data.
     SendPositionAddInfo,
-    /// `001001`: the same, then a supplement that selects a memory area or additional data.
+    /// `001001`: as `111000`, then a supplement that selects a memory area or additional data.
     PositionSelectMemory,
-    /// `011011`: the same, then a supplement that writes a word.
+    /// `011011`: as `111000`, then a supplement that writes a word.
     PositionReceiveParameter,
-    /// `100100`: the same, then a supplement that asks for a word.
+    /// `100100`: as `111000`, then a supplement that requests a word.
     PositionSendParameter,
-    /// `101101`: the same, then a supplement that clears errors and warnings.
+    /// `101101`: as `111000`, then a supplement that clears errors and warnings.
     PositionErrorReset,
-    /// `110110`: the same, then a supplement with a test command.
+    /// `110110`: as `111000`, then a supplement with a test command.
     PositionTestCommand,
     /// `010010`: receive communication command: address and data.
     ReceiveCommunication,
@@ -61,10 +61,10 @@ impl ModeCommand {
         Self::PositionTestCommand,
         Self::ReceiveCommunication,
     ];
-    /// The commands that bring a position and ask for nothing else: what a trigger sends.
+    /// The commands that only read a position: the ones that a trigger sends.
     pub const POSITION: [Self; 2] = [Self::SendPosition, Self::SendPositionAddInfo];
 
-    /// The six bits as they stand in the tables of the interface description.
+    /// The six bits as in the tables of the interface description.
     pub const fn code(self) -> u8 {
         match self {
             Self::SendPosition => 0b000_111,
@@ -89,22 +89,22 @@ impl ModeCommand {
         Self::ALL.into_iter().find(|c| c.code() == code)
     }
 
-    /// Whether only an EnDat 2.2 encoder knows it.
+    /// True if only EnDat 2.2 encoders support it.
     pub const fn is_endat22(self) -> bool {
         self.has_f2() || matches!(self, Self::ReceiveCommunication)
     }
 
-    /// Whether the answer is a position.
+    /// True if the answer is a position.
     pub const fn is_position(self) -> bool {
         matches!(self, Self::SendPosition) || self.has_f2()
     }
 
-    /// Whether the answer carries F2 after F1 (EnDat 2.2 position frame).
+    /// True if the answer carries F2 after F1 (EnDat 2.2 position frame).
     pub const fn has_f2(self) -> bool {
         matches!(self, Self::SendPositionAddInfo) || self.has_supplement()
     }
 
-    /// Whether 8 and 16 bits follow the mode command, and the answer has the same fields.
+    /// True if 8 and 16 bits follow the mode command; the answer then has the same fields.
     pub const fn has_parameter(self) -> bool {
         matches!(
             self,
@@ -117,7 +117,7 @@ impl ModeCommand {
         )
     }
 
-    /// Whether 8 and 16 bits follow the answer.
+    /// True if 8 and 16 bits follow the answer.
     pub const fn has_supplement(self) -> bool {
         matches!(
             self,
@@ -151,7 +151,7 @@ impl ModeCommand {
         START_BITS + self.error_bits() + self.payload_bits(position_bits) + CRC_BITS
     }
 
-    /// Complete clock pulses before the earliest start bit: the command with what belongs to it, and 2T on either side.
+    /// Complete clock pulses before the earliest start bit: the command with its parameter, and 2T on either side.
     pub const fn lead_pulses(self) -> u32 {
         match self.has_parameter() {
             true => LEAD_PULSES + PARAMETER_BITS,
@@ -175,10 +175,10 @@ const SEND_POSITION_ADD_INFO: Named = command(
     "111000 send position with additional data (EnDat 2.2)",
 );
 
-/// Mode commands that a trigger sends.
+/// Mode commands that a trigger may send.
 pub const POSITION_COMMANDS: &[Named] = &[SEND_POSITION, SEND_POSITION_ADD_INFO];
 
-/// Mode commands that a request takes.
+/// Mode commands that a request may send.
 pub const MODE_COMMANDS: &[Named] = &[
     SEND_POSITION,
     command(

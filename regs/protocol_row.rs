@@ -1,50 +1,50 @@
-//! What there is to say of a protocol.
+//! The description of a protocol.
 
 use crate::causes::cause::Cause;
 use crate::register::field;
 use crate::{Field, Named, Part, Values, CHANNELS_MAX};
 
-/// What card and host agree on of a protocol.
+/// Facts about a protocol that card and host share.
 #[derive(Debug)]
 pub struct ProtocolRow {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// Its name as an identifier; so a configuration has it.
+    /// Name as an identifier, as used in configurations.
     pub word: &'static str,
-    /// The same for who chooses among them.
+    /// One-line description for users who choose a protocol.
     pub means: &'static str,
-    /// One that speaks it, with its article.
+    /// Name of a channel with this protocol, with its article.
     pub channel: &'static str,
-    /// Whether its line has a clock.
+    /// True if the line has a clock.
     pub has_clock: bool,
-    /// Its causes.
+    /// Causes.
     pub causes: &'static [Cause],
-    /// The same under the codes of a result.
+    /// Causes by their code in a result.
     pub coded: &'static [Named],
-    /// Blocks of registers that only its channels have.
+    /// Register blocks that only channels with this protocol have.
     pub blocks: &'static [&'static str],
-    /// Fields that say or take something else than in EnDat, by their [`Field::by_protocol`](field@Field::by_protocol).
+    /// Fields with other values or limits than in EnDat, by their [`Field::by_protocol`](field@Field::by_protocol).
     pub fields: &'static [OwnField],
-    /// Its field of `card.protocols`, bit n: channel n speaks it. None of EnDat, which the others speak.
+    /// Field of `card.protocols`, bit n for channel n; `None` for EnDat, the default.
     pub channels: Option<Field>,
-    /// What a card has that speaks it, if its channels have words of their own.
+    /// Part of a card with this protocol, if its channels have additional words.
     pub part: Option<Part>,
-    /// Lowest bit of a position that counts turns, where that does not follow from the width of the angle: unused bits are between the two.
+    /// Lowest turn bit of a position, if it does not follow from the width of the angle; the bits between the two are unused.
     pub turns_at: Option<u32>,
-    /// Numbers of `config.timing.request_id` whose replies bring turns; none: every position has them.
+    /// Numbers of `config.timing.request_id` whose replies include turns; `None` if every position has turns.
     pub turns_with: Option<&'static [u8]>,
-    /// `status.line` has bits of the frame that are not position, no flags.
+    /// True if `status.line` holds special bits of the frame instead of flags.
     pub has_special_bits: bool,
 }
 
-/// What a field of all channels is in one protocol.
+/// Values of a shared field in one protocol.
 #[derive(Debug)]
 pub struct OwnField {
     /// Its [`Field::by_protocol`](field@Field::by_protocol).
     pub field: &'static str,
-    /// What its numbers or bits stand for.
+    /// Named numbers or bits.
     pub values: Values,
-    /// Numbers that it takes, each range from and to; none = all that fit.
+    /// Allowed ranges, both ends included; empty if all numbers are allowed.
     pub takes: &'static [(u32, u32)],
 }
 

@@ -1,5 +1,5 @@
-//! The protocols that a channel may speak. One row has all that card and host agree on of a protocol: who works with results, registers and
-//! causes asks it, and knows none by name.
+//! The protocols of a channel. One row describes each protocol; code for results, registers and causes reads the row and names no
+//! protocol.
 
 pub mod ssi;
 pub mod t_format;
@@ -9,7 +9,7 @@ use crate::protocol_row::{OwnField, ProtocolRow};
 use crate::register::is_same;
 use crate::{Block, Field, Values};
 
-/// What a channel speaks.
+/// Protocol of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Protocol {
     /// EnDat 2.1 or 2.2.
@@ -38,10 +38,10 @@ const ENDAT: ProtocolRow = ProtocolRow {
 };
 
 impl Protocol {
-    /// All of them; EnDat is the first.
+    /// All protocols; EnDat is the first.
     pub const ALL: &[Self] = &[Self::Endat, Self::TFormat, Self::Ssi];
 
-    /// What card and host agree on of it.
+    /// Facts that card and host share.
     pub const fn row(self) -> &'static ProtocolRow {
         match self {
             Self::Endat => &ENDAT,
@@ -50,12 +50,12 @@ impl Protocol {
         }
     }
 
-    /// Its name.
+    /// Name.
     pub const fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// Code of its cause of that name; without one it does not compile, or panics.
+    /// Code of the cause with this name; a missing cause fails compilation, or panics.
     pub const fn code_of(self, name: &str) -> u64 {
         let causes = self.row().causes;
         let mut at = 0;
@@ -65,14 +65,14 @@ impl Protocol {
         causes[at].code
     }
 
-    /// Whether its channels have such a block; blocks that no protocol claims are those of all.
+    /// True if channels with this protocol have the block. Every channel has the blocks that no protocol claims.
     pub fn has(self, block: &Block) -> bool {
         let claims = |p: &&Self| p.row().blocks.contains(&block.name);
         let owner = Self::ALL.iter().find(claims);
         owner.is_none_or(|owner| *owner == self)
     }
 
-    /// What a field is in it, if that is something else than in EnDat.
+    /// Values of a field in this protocol, if they differ from EnDat.
     pub const fn own(self, field: &Field) -> Option<&'static OwnField> {
         let Some(key) = field.by_protocol else {
             return None;
@@ -89,15 +89,15 @@ impl Protocol {
     }
 }
 
-/// Which protocol each channel of a card speaks: the word `card.protocols`.
+/// Protocol of each channel of a card: the word `card.protocols`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Protocols(u32);
 
 impl Protocols {
-    /// Of a card whose channels all speak EnDat.
+    /// All channels speak EnDat.
     pub const ENDAT: Self = Self(0);
 
-    /// As the word says.
+    /// Decodes the word.
     pub const fn of_word(word: u32) -> Self {
         let mut fields = 0;
         let mut at = 0;
@@ -110,7 +110,7 @@ impl Protocols {
         Self(word & fields)
     }
 
-    /// With one channel that speaks a protocol.
+    /// Sets the protocol of one channel.
     pub const fn with(self, channel: usize, protocol: Protocol) -> Self {
         match &protocol.row().channels {
             Some(channels) => Self(self.0 | 1 << (channels.lsb + channel as u32)),
@@ -118,12 +118,12 @@ impl Protocols {
         }
     }
 
-    /// The word's bits.
+    /// Encodes the word.
     pub const fn word(self) -> u32 {
         self.0
     }
 
-    /// What a channel speaks.
+    /// Protocol of a channel.
     pub const fn of(self, channel: usize) -> Protocol {
         let mut at = 0;
         while at < Protocol::ALL.len() {
@@ -135,7 +135,7 @@ impl Protocols {
         Protocol::Endat
     }
 
-    /// Bit n: channel n speaks this protocol; of EnDat none has a bit.
+    /// Bit mask of the channels with this protocol; 0 for EnDat, which has no bits.
     pub const fn channels(self, protocol: Protocol) -> u64 {
         match &protocol.row().channels {
             Some(field) => field.of(self.0) as u64,
@@ -144,7 +144,7 @@ impl Protocols {
     }
 }
 
-/// Fields of a word that says which channels speak what, beside `others`; lowest first.
+/// Fields of the protocol word, together with `others`; lowest first.
 pub(crate) const fn fields<const N: usize>(others: &[Field]) -> [Field; N] {
     let mut fields = [others[0]; N];
     let (mut count, mut at) = (0, 0);
@@ -168,7 +168,7 @@ pub(crate) const fn fields<const N: usize>(others: &[Field]) -> [Field; N] {
 }
 
 impl Field {
-    /// Whether it takes this number in a channel that speaks this protocol.
+    /// True if the field accepts this number in a channel with this protocol.
     pub fn allows(&self, value: u32, protocol: Protocol) -> bool {
         let ranges = self.ranges(protocol);
         match self.values_in(protocol) {
@@ -180,7 +180,7 @@ impl Field {
         }
     }
 
-    /// What single numbers or bits stand for in a channel that speaks this protocol.
+    /// Named numbers or bits in a channel with this protocol.
     pub const fn values_in(&self, protocol: Protocol) -> Values {
         match protocol.own(self) {
             Some(own) => own.values,
@@ -188,7 +188,7 @@ impl Field {
         }
     }
 
-    /// What it takes in a channel that speaks this protocol; none = all that fit.
+    /// Allowed ranges in a channel with this protocol; empty if all numbers are allowed.
     pub const fn ranges(&self, protocol: Protocol) -> &'static [(u32, u32)] {
         match protocol.own(self) {
             Some(own) => own.takes,
@@ -196,16 +196,22 @@ impl Field {
         }
     }
 
-    /// Whether some protocol takes only some of the numbers that fit.
+    /// True if at least one protocol limits the numbers.
     pub fn is_limited(&self) -> bool {
         let mut all = Protocol::ALL.iter();
         all.any(|protocol| !self.ranges(*protocol).is_empty())
     }
 
-    /// Protocols in which single numbers or bits stand for something else than in EnDat, and for what.
+    /// Protocols whose named numbers or bits differ from EnDat, with these names.
     pub fn values_elsewhere(&self) -> impl Iterator<Item = (Protocol, Values)> + '_ {
         let all = Protocol::ALL.iter();
         all.filter_map(|protocol| Some((*protocol, protocol.own(self)?.values)))
             .filter(|(_, values)| *values != Values::Plain && *values != self.values)
+    }
+
+    /// Those of them in which the numbers or bits stand for anything.
+    pub fn named_elsewhere(&self) -> impl Iterator<Item = (Protocol, Values)> + '_ {
+        let all = self.values_elsewhere();
+        all.filter(|(_, values)| !matches!(values, Values::Codes([]) | Values::Bits([])))
     }
 }

@@ -1,21 +1,21 @@
-//! What a table of registers is made of.
+//! Types of the register table.
 
 use crate::part::Part;
 use crate::{Named, Values};
 
-/// What a host may do with a word.
+/// Access of a host to a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// Read only: a write does nothing.
     ReadOnly,
     /// Read and write.
     ReadWrite,
-    /// Write only: ones act once, a read gives 0.
+    /// Write only: writing 1 acts once; reads return 0.
     Strobe,
 }
 
 impl Access {
-    /// Short form used in tables.
+    /// Short form for tables.
     pub const fn short(self) -> &'static str {
         match self {
             Self::ReadOnly => "ro",
@@ -25,7 +25,7 @@ impl Access {
     }
 }
 
-/// Some bits of a word.
+/// A bit field of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
     /// Name, unique in its word.
@@ -36,13 +36,13 @@ pub struct Field {
     pub width: u32,
     /// Unit of the number, or "".
     pub unit: &'static str,
-    /// What it means.
+    /// Meaning.
     pub meaning: &'static str,
-    /// What single numbers or bits stand for.
+    /// Named numbers or bits.
     pub values: Values,
-    /// Numbers that the card takes, each range from and to; none = all that fit.
+    /// Allowed ranges, both ends included; empty if all numbers are allowed.
     pub takes: &'static [(u32, u32)],
-    /// Name under which protocols may have `values` and `takes` of their own for it (`Protocol::own`); none: it is the same in all of them.
+    /// Key under which a protocol may replace `values` and `takes` (`Protocol::own`); `None` if all protocols share them.
     pub by_protocol: Option<&'static str>,
 }
 
@@ -52,7 +52,7 @@ impl Field {
         (word & self.mask()) >> self.lsb
     }
 
-    /// A word with this field changed; none if `value` does not fit.
+    /// The word with this field changed; `None` if `value` does not fit.
     pub fn put(&self, word: u32, value: u32) -> Option<u32> {
         let is_fitting = u64::from(value) < 1u64 << self.width;
         is_fitting.then(|| word & !self.mask() | value << self.lsb)
@@ -63,50 +63,50 @@ impl Field {
         (((1u64 << self.width) - 1) << self.lsb) as u32
     }
 
-    /// The same field, with a list of what its numbers stand for.
+    /// Adds named numbers.
     pub(crate) const fn codes(mut self, codes: &'static [Named]) -> Self {
         self.values = Values::Codes(codes);
         self
     }
 
-    /// The same field, which takes these numbers only.
+    /// Adds allowed ranges.
     pub(crate) const fn takes(mut self, ranges: &'static [(u32, u32)]) -> Self {
         self.takes = ranges;
         self
     }
 
-    /// The same field, for which protocols may have something of their own under this name.
+    /// Lets protocols replace values and ranges under this key.
     pub(crate) const fn by_protocol(mut self, name: &'static str) -> Self {
         self.by_protocol = Some(name);
         self
     }
 
-    /// The same field, with a list of what its bits stand for.
+    /// Adds named bits.
     pub(crate) const fn bits(mut self, bits: &'static [Named]) -> Self {
         self.values = Values::Bits(bits);
         self
     }
 }
 
-/// One word.
+/// A word of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Register {
     /// Name, unique in its block.
     pub name: &'static str,
     /// Word offset in its block.
     pub offset: u16,
-    /// What a host may do with it.
+    /// Access of a host.
     pub access: Access,
     /// One sentence.
     pub meaning: &'static str,
-    /// Part that a card must have for it, beside that of its block.
+    /// Part that a card needs for this word, in addition to that of the block.
     pub part: Option<Part>,
-    /// Fields, lowest first; bits of no field read as 0, except in configuration words, which keep what is written.
+    /// Fields, lowest first. Other bits read 0, except in configuration words, which keep the written value.
     pub fields: &'static [Field],
 }
 
 impl Register {
-    /// The same word, which only cards with this part have.
+    /// Makes the word optional: only cards with this part have it.
     pub(crate) const fn of(mut self, part: Part) -> Self {
         self.part = Some(part);
         self
@@ -118,7 +118,7 @@ impl Register {
     }
 }
 
-/// A field without list or limits.
+/// A field without named values or limits.
 pub(crate) const fn field(
     name: &'static str,
     lsb: u32,
@@ -155,35 +155,35 @@ pub(crate) const fn word(
     }
 }
 
-/// Words that stand together, once in the card or once for each channel.
+/// Group of words, once in the card or once for each channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Block {
     /// Name; registers of a channel are called `<name><channel>_<register>`.
     pub name: &'static str,
     /// First word, for channel 0.
     pub base: u16,
-    /// Words from one channel's to the next one's.
+    /// Words from one channel's block to the next.
     pub stride: u16,
-    /// Whether every channel has one.
+    /// True if every channel has a block.
     pub per_channel: bool,
     /// One sentence.
     pub meaning: &'static str,
-    /// Whether it is RAM: 0 after power-up, and no reset clears it.
+    /// True for RAM: 0 after power-up, not cleared by reset.
     pub is_ram: bool,
-    /// Part that a card must have for it.
+    /// Part that a card needs for this block.
     pub part: Option<Part>,
-    /// Its words, lowest offset first.
+    /// Words, lowest offset first.
     pub registers: &'static [Register],
 }
 
 impl Block {
-    /// Word address of one of its registers.
+    /// Word address of a register of this block.
     pub const fn address(&self, register: &Register, channel: usize) -> u16 {
         let block = if self.per_channel { channel as u16 } else { 0 };
         self.base + self.stride * block + register.offset
     }
 
-    /// A field that is known to be there, by the names of its register and its own; else it does not compile.
+    /// A field by register and field name; a missing one fails compilation.
     pub const fn field(&self, register: &str, field: &str) -> &'static Field {
         let fields = self.word(register).fields;
         let mut f = 0;
@@ -193,7 +193,7 @@ impl Block {
         &fields[f]
     }
 
-    /// A register that is known to be there, by its name; else it does not compile.
+    /// A register by name; a missing one fails compilation.
     pub const fn word(&self, register: &str) -> &'static Register {
         let registers = self.registers;
         let mut r = 0;

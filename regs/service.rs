@@ -27,13 +27,13 @@ const SLOT: &[Field] = &[
         16,
         16,
         "",
-        "status.sequence of the frame that brought it: its age is the difference",
+        "status.sequence of the frame that brought it; the difference is its age",
     ),
 ];
 const COUNT: &[Field] = &[field("frames", 0, 32, "", "Frames since clear, wrapping")];
 const PLATE: &[Field] = &[
-    field("value", 0, 16, "", "Word of the encoder"),
-    field("is_read", 16, 1, "", "It has been read"),
+    field("value", 0, 16, "", "Content of the encoder's word"),
+    field("is_read", 16, 1, "", "The word has been read"),
 ];
 
 const fn list(name: &'static str, i: u8) -> Register {
@@ -45,7 +45,7 @@ const fn slot(name: &'static str, i: u8) -> Register {
         name,
         at::SLOTS + i,
         ReadOnly,
-        "What the additional data of that code said last.",
+        "Last content of the additional data with that code.",
         SLOT,
     )
 }
@@ -58,10 +58,10 @@ const fn frames(cause: u8) -> Register {
         },
         at::COUNTERS + cause,
         ReadOnly,
-        "Frames that ended with this cause (good: with none).",
+        "Frames that ended with this cause (good: without one).",
         COUNT,
     );
-    // What only the diagnosis of the line finds.
+    // Only the line diagnosis detects these.
     match cause as u64 {
         endat::NO_ENCODER.. => counter.of(Part::Diagnosis),
         _ => counter,
@@ -80,7 +80,7 @@ const fn plate_word(i: usize) -> Register {
     .of(Part::Initialise)
 }
 
-/// Requests, health, slots and name plate of a channel; cards without service do not have it. RAM: a reset does not clear it.
+/// Requests, health, slots and name plate of a channel. Cards without service have no such block. RAM: a reset does not clear it.
 pub const SERVICE: Block = Block {
     name: "service",
     base: SERVICE_BASE,
@@ -95,9 +95,9 @@ pub const SERVICE: Block = Block {
             field("address", 16, 8, "", "MRS code, address or port"),
             field("command", 24, 6, "", "Mode command, any of the fourteen").codes(MODE_COMMANDS),
         ]),
-        word("request_state", at::REQUEST_STATE, ReadOnly, "What became of the request.", &[
-            field("busy", 0, 1, "", "It is under way"),
-            field("error", 4, 4, "", "What went wrong").codes(ERRORS),
+        word("request_state", at::REQUEST_STATE, ReadOnly, "State of the request.", &[
+            field("busy", 0, 1, "", "The request is under way"),
+            field("error", 4, 4, "", "Error of the request").codes(ERRORS),
             field("finished", 16, 16, "", "Requests finished, wrapping"),
         ]),
         word("answer", at::ANSWER, ReadOnly, "Answer to the last request; bits 31..0 of a longer one.", &[
@@ -105,77 +105,77 @@ pub const SERVICE: Block = Block {
             field("address", 16, 8, "", "Echo of MRS code, address or port; or WRN, RM, Busy, I4..I0"),
         ]),
         word("answer_more", at::ANSWER_MORE, ReadOnly, "Bits 47..32 of a longer answer.", HIGH),
-        word("duration", at::DURATION, ReadOnly, "How long the last request took.", &[
+        word("duration", at::DURATION, ReadOnly, "Duration of the last request.", &[
             field("us", 0, 16, "us", "Modulo 65536"),
-            field("ms", 16, 16, "ms", "The same in milliseconds"),
+            field("ms", 16, 16, "ms", "Milliseconds"),
         ]),
-        word("control", at::CONTROL, ReadWrite, "Acts when written.", &[
+        word("control", at::CONTROL, ReadWrite, "Actions on write.", &[
             field("initialise", 0, 1, "", "1: initialise the encoder"),
             field("clear", 1, 1, "", "1: counters, alarm, position_2 and error_test to zero; lost.triggers goes on"),
-            field("cancel", 2, 1, "", "1: the request that waits for a trigger is given up; one on the wire is finished"),
+            field("cancel", 2, 1, "", "1: cancel the request that waits for a trigger; one on the wire is finished"),
         ]),
-        word("force", at::FORCE, ReadWrite, "Errors forced upon what is received, to try the error paths; not for regular operation.", &[
+        word("force", at::FORCE, ReadWrite, "Forced errors in the received data, for tests of the error paths; not for regular operation.", &[
             field("f1", 0, 1, "", "Inverts F1"),
             field("f2", 1, 1, "", "Inverts F2"),
-            field("crc", 2, 1, "", "Spoils the CRC"),
-            field("second_receiver", 3, 1, "", "The second receiver disagrees, if there is one"),
-            field("own_frames", 4, 1, "", "1: only in frames that requests have of their own"),
+            field("crc", 2, 1, "", "Corrupts the CRC"),
+            field("second_receiver", 3, 1, "", "The second receiver disagrees, on cards with one"),
+            field("own_frames", 4, 1, "", "1: only in the separate frames of requests"),
         ]),
         word("progress", at::PROGRESS, ReadOnly, "Initialisation.", &[
             field("step", 0, 16, "", "Step under way").codes(STEPS),
             field("failed", 16, 16, "", "Step that failed").codes(STEPS),
         ]).of(Part::Initialise),
-        word("state", at::STATE, ReadOnly, "What is known and what is wrong.", &[
+        word("state", at::STATE, ReadOnly, "State of the encoder and of its monitoring.", &[
             field("initialised", 0, 1, "", "The name plate is valid"),
             field("alarm", 1, 1, "", "Too many bad frames; latched"),
             field("position_2", 2, 1, "", "Position 2 was too far from position 1; latched"),
-            field("endat22", 3, 1, "", "The encoder knows EnDat 2.2"),
-            field("other_width", 4, 1, "", "The encoder has another width than configured; its own is used"),
-            field("slower", 5, 1, "", "The encoder takes only a slower clock than configured; that is used"),
+            field("endat22", 3, 1, "", "The encoder supports EnDat 2.2"),
+            field("other_width", 4, 1, "", "The encoder has another width than configured, which the card uses"),
+            field("slower", 5, 1, "", "The encoder supports only a slower clock than configured, which the card uses"),
             field("unplugged", 6, 1, "", "DATA has been HIGH for long: no encoder, or an open line"),
             field("initialising", 7, 1, "", "power-up sequence or initialisation is under way; triggers are lost"),
-            field("error_test", 8, 1, "", "A forced error was not told; latched"),
-            field("starts", 16, 16, "", "How often the program has begun since power-up, wrapping: one more after each reset, and after an upset that led it astray"),
+            field("error_test", 8, 1, "", "A forced error was not reported; latched"),
+            field("starts", 16, 16, "", "Starts of the program since power-up, wrapping: one for each reset, and one for each upset that made it restart"),
         ]),
-        word("lost", at::LOST, ReadOnly, "What did not get its turn.", &[
-            field("triggers", 0, 16, "", "Triggers that came while the line was not free, wrapping"),
-            field("ends", 16, 16, "", "Frames that ended before the one before was counted"),
+        word("lost", at::LOST, ReadOnly, "Triggers and frames that were dropped.", &[
+            field("triggers", 0, 16, "", "Triggers lost because the line was busy, wrapping"),
+            field("ends", 16, 16, "", "Frames that ended before the previous one was counted"),
         ]),
         word("threshold", at::THRESHOLD, ReadWrite, "Alarm: n bad frames of the last m.", &[
             field("n", 0, 16, "frames", "0 = no alarm"),
-            field("m", 16, 16, "frames", "1..16; another m begins a new count").takes(&[(1, 16)]),
+            field("m", 16, 16, "frames", "1..16; changing m starts a new count").takes(&[(1, 16)]),
         ]),
         word("bad_frames", at::BAD_FRAMES, ReadOnly, "Bad frames of the last m.", &[
             field("count", 0, 16, "frames", "How many"),
             field("which", 16, 16, "", "Bit 0 = the last frame"),
         ]),
-        word("offset_low", at::OFFSET[0], ReadWrite, "Position 2 minus position 1 as it should be, bits 31..0.", VALUE),
-        word("offset_high", at::OFFSET[1], ReadWrite, "The same, bits 47..32.", HIGH),
-        word("tolerance", at::TOLERANCE, ReadWrite, "Largest distance from that; 0 = no comparison.", VALUE),
+        word("offset_low", at::OFFSET[0], ReadWrite, "Nominal difference: position 2 minus position 1, bits 31..0.", VALUE),
+        word("offset_high", at::OFFSET[1], ReadWrite, "Nominal difference, bits 47..32.", HIGH),
+        word("tolerance", at::TOLERANCE, ReadWrite, "Largest allowed distance from the nominal difference; 0 = no comparison.", VALUE),
         word("difference_low", at::DIFFERENCE[0], ReadOnly, "Position 2 minus position 1 minus offset, modulo the position's width, bits 31..0.", VALUE),
-        word("difference_high", at::DIFFERENCE[1], ReadOnly, "The same, bits 47..32.", HIGH),
+        word("difference_high", at::DIFFERENCE[1], ReadOnly, "Position 2 minus position 1 minus offset, bits 47..32.", HIGH),
         word("comparisons", at::COMPARISONS, ReadOnly, "Comparisons of positions 1 and 2.", &[
             field("all", 0, 16, "", "All, wrapping"),
-            field("failed", 16, 16, "", "Those that failed, wrapping"),
+            field("failed", 16, 16, "", "Comparisons that failed, wrapping"),
         ]),
         word("position_2_low", at::POSITION_2[0], ReadOnly, "Position 2, bits 31..0.", VALUE),
         word("position_2_high", at::POSITION_2[1], ReadOnly, "Position 2, bits 47..32.", HIGH),
-        word("list_length", at::LIST_LENGTH, ReadWrite, "Codes of the list that are selected in turn.", &[
+        word("list_length", at::LIST_LENGTH, ReadWrite, "Length of the list of codes that are selected in turn.", &[
             field("length", 0, 4, "", "0..8; more is 8").takes(&[(0, 8)]),
         ]),
-        word("info_status", at::INFO_STATUS, ReadOnly, "WRN, RM, Busy, I4..I0 as they came last with a right CRC.", &[
-            field("info_1", 0, 8, "", "Of additional data 1"),
-            field("crc_1", 8, 1, "", "CRC of the last additional data 1 wrong: nothing of it was taken"),
-            field("info_2", 16, 8, "", "Of additional data 2"),
-            field("crc_2", 24, 1, "", "CRC of the last additional data 2 wrong: nothing of it was taken"),
+        word("info_status", at::INFO_STATUS, ReadOnly, "Last WRN, RM, Busy, I4..I0 with a right CRC.", &[
+            field("info_1", 0, 8, "", "From additional data 1"),
+            field("crc_1", 8, 1, "", "CRC of the last additional data 1 was wrong; its content was discarded"),
+            field("info_2", 16, 8, "", "From additional data 2"),
+            field("crc_2", 24, 1, "", "CRC of the last additional data 2 was wrong; its content was discarded"),
         ]),
-        word("limits", at::LIMITS, ReadWrite, "What a frame must keep to.", &[
-            field("watchdog_us", 0, 12, "us", "Longest time from the first falling edge to the end of the recovery time; 0 = not watched. 101010, 100011, 011100, continuous clock and the initialisation are not watched"),
-            field("recovery_min_cycles", 16, 13, "cycles", "Shortest recovery time; 0 = not checked. The program writes the shortest of the configured range at start"),
+        word("limits", at::LIMITS, ReadWrite, "Time limits of a frame.", &[
+            field("watchdog_us", 0, 12, "us", "Longest time from the first falling edge to the end of the recovery time; 0 = off. Not applied to 101010, 100011, 011100, continuous clock and initialisation"),
+            field("recovery_min_cycles", 16, 13, "cycles", "Shortest recovery time; 0 = not checked. At start the program writes the lower end of the configured range"),
         ]).of(Part::Diagnosis),
         word("continuous", at::CONTINUOUS, ReadWrite, "Continuous clock, for the command 000111.", &[
-            field("go_on", 0, 1, "", "1: the clock goes on after each position, from the next trigger on"),
-            field("stop_at_error", 1, 1, "", "1: it stops after an error until the next trigger; 0: it goes on after CRC, F1 and F2"),
+            field("go_on", 0, 1, "", "1: the clock continues after each position, from the next trigger on"),
+            field("stop_at_error", 1, 1, "", "1: the clock stops after an error until the next trigger; 0: it continues after CRC, F1 and F2"),
         ]).of(Part::Continuous),
         list("list_0", 0),
         list("list_1", 1),
@@ -193,15 +193,15 @@ pub const SERVICE: Block = Block {
         slot("slot_5", 5),
         slot("slot_6", 6),
         slot("slot_7", 7),
-        word("request_wait", at::REQUEST_WAIT, ReadWrite, "Longest wait of a request for a trigger.", &[
-            field("ms", 0, 16, "ms", "0 = no limit. The program writes 2000 at start"),
+        word("request_wait", at::REQUEST_WAIT, ReadWrite, "Timeout of a request that waits for a trigger.", &[
+            field("ms", 0, 16, "ms", "0 = no timeout. The program writes 2000 at start"),
         ]),
-        word("error_test", at::ERROR_TEST, ReadWrite, "Forced errors on the card's own schedule.", &[
-            field("period_ms", 0, 16, "ms", "One error each so many milliseconds, in a frame of its own: 10 to 32000, 0 = none. Begins with safety.error_test_ms of the configuration").takes(&[(0, 0), (ERROR_TEST_PATIENCE_MS as u32, ERROR_TEST_MS_MAX as u32)]),
+        word("error_test", at::ERROR_TEST, ReadWrite, "Forced errors on the card's schedule.", &[
+            field("period_ms", 0, 16, "ms", "Period of the forced errors, each in a separate frame: 10 to 32000, 0 = none. Initial value: safety.error_test_ms of the configuration").takes(&[(0, 0), (ERROR_TEST_PATIENCE_MS as u32, ERROR_TEST_MS_MAX as u32)]),
         ]).of(Part::ErrorTest),
-        word("error_test_state", at::ERROR_TEST_STATE, ReadOnly, "What became of them.", &[
-            field("told", 0, 16, "", "Forced errors that were told with their cause, since clear, wrapping"),
-            field("silent", 16, 16, "", "Forced errors after which the frame was told as good, since clear"),
+        word("error_test_state", at::ERROR_TEST_STATE, ReadOnly, "Results of the forced errors.", &[
+            field("told", 0, 16, "", "Forced errors reported with their cause, since clear, wrapping"),
+            field("silent", 16, 16, "", "Forced errors whose frame was reported as good, since clear"),
         ]).of(Part::ErrorTest),
         frames(0),
         frames(1),
@@ -221,7 +221,7 @@ pub const SERVICE: Block = Block {
         frames(15),
         frames(16),
         frames(17),
-        word("frames_position_2", at::COUNTERS + COUNTER_POSITION_2, ReadOnly, "Comparisons of positions 1 and 2 that failed.", COUNT),
+        word("frames_position_2", at::COUNTERS + COUNTER_POSITION_2, ReadOnly, "Failed comparisons of positions 1 and 2.", COUNT),
         word("bad_infos", at::COUNTERS + COUNTER_BAD_INFOS, ReadOnly, "Blocks of additional data with a wrong CRC.", &[
             field("count", 0, 32, "", "Since clear, wrapping"),
         ]),
@@ -247,8 +247,8 @@ pub const SERVICE: Block = Block {
         plate_word(19),
         plate_word(20),
         word("delay", PLATE_DELAY, ReadOnly, "Line delay measured at initialisation.", &[
-            field("value", 0, 16, "cycles", "tD, synchroniser and filter included"),
-            field("is_read", 16, 1, "", "It has been measured"),
+            field("value", 0, 16, "cycles", "tD, including synchroniser and filter"),
+            field("is_read", 16, 1, "", "The delay has been measured"),
         ]).of(Part::Initialise),
     ],
 };

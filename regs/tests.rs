@@ -23,8 +23,8 @@ fn words() -> Vec<(String, u16, &'static str)> {
     words
 }
 
-/// Compares with the committed list; `UPDATE_EXPECT` set renews it. Its first line is the version of the map: a list that has changed must
-/// have a higher minor number, so that a host can tell which words a card has.
+/// Compares with the committed list; `UPDATE_EXPECT` renews it. Its first line is the version of the map. A changed list needs a higher minor
+/// version, from which a host derives the words of a card.
 fn assert_golden(name: &str, now: &str) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("golden")
@@ -37,14 +37,14 @@ fn assert_golden(name: &str, now: &str) {
     golden::assert_committed(&path, &format!("map {major}.{minor}\n{now}"));
 }
 
-/// The rule of the version: the minor number rises whenever a word or field is added.
+/// Checks the version rule: minor rises when a word or field is added.
 fn check_version(committed: &str, now: &str, version: [u8; 3]) -> Result<(), String> {
     let (head, words) = committed.split_once('\n').unwrap_or_default();
     let [major, minor, _] = version;
     let next = format!("map {major}.{}", minor + 1);
     match head == format!("map {major}.{minor}") && words != now {
         true => Err(format!(
-            "the map has changed and its version has not: make VERSION in regs/lib.rs {next}, then renew the list"
+            "the map has changed, but not its version: set VERSION in regs/lib.rs to {next}, then renew the list"
         )),
         false => Ok(()),
     }
@@ -98,7 +98,7 @@ fn no_two_words_share_an_address_and_no_two_fields_a_bit() {
     }
 }
 
-/// Catches a mode command whose text shows another code, and one that is left out.
+/// Catches a mode command whose text shows another code, and a missing one.
 #[test]
 fn commands_are_those_of_the_protocol() {
     for (listed, command) in MODE_COMMANDS.iter().zip(ModeCommand::ALL) {
@@ -108,7 +108,7 @@ fn commands_are_those_of_the_protocol() {
     }
 }
 
-/// Catches a code that the field cannot hold, two with one name or number, and an identifier that a language refuses.
+/// Catches a code that does not fit into its field, a duplicate name or number, and an identifier that a language reserves.
 #[test]
 fn values_fit_their_fields() {
     let fields = BLOCKS

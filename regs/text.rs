@@ -1,4 +1,4 @@
-//! What a field says, in words: for hosts, which have a heap.
+//! Descriptions of fields, for hosts with a heap.
 
 use crate::{Field, Protocol, Values};
 use alloc::borrow::ToOwned;
@@ -7,7 +7,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 impl Field {
-    /// What it takes in a channel that speaks this protocol, if `value` is nothing of it.
+    /// Description of the accepted numbers, if a channel with this protocol rejects `value`.
     pub fn refusal(&self, value: u32, protocol: Protocol) -> Option<String> {
         if self.allows(value, protocol) {
             return None;
@@ -23,7 +23,7 @@ impl Field {
         })
     }
 
-    /// What the field's number in a word of a channel that speaks this protocol says, if it stands for something.
+    /// Description of the field's number in a word, in a channel with this protocol; `None` if the number has no name.
     pub fn told(&self, word: u32, protocol: Protocol) -> Option<String> {
         let value = self.of(word);
         match self.values_in(protocol) {
@@ -40,7 +40,7 @@ impl Field {
         }
     }
 
-    /// Its bits as `15:0`, or `3`.
+    /// Bits as `15:0`, or `3`.
     pub fn bit_range(&self) -> String {
         match self.width {
             1 => self.lsb.to_string(),

@@ -1,6 +1,6 @@
-//! What an encoder puts on the line, bit by bit: answers and their CRC5.
+//! Answers of an encoder, bit by bit, with their CRC5.
 //!
-//! Written from the encoder's side and apart from the core's CRC, so that each checks the other.
+//! Written from the encoder's side and independent of the core's CRC, so that each checks the other.
 
 /// Bits of the CRC that ends every answer.
 pub const CRC_BITS: u32 = 5;
@@ -26,7 +26,7 @@ pub fn crc5(bits: impl Iterator<Item = bool>) -> u8 {
 pub struct AnswerBits {
     /// The bits; those at and above `len` are zero.
     pub word: u128,
-    /// How many there are.
+    /// Number of bits.
     pub len: u32,
 }
 
@@ -75,7 +75,7 @@ pub struct PositionAnswer {
     pub f2: Option<bool>,
     /// The position.
     pub position: u64,
-    /// Its width in bits.
+    /// Width in bits.
     pub position_bits: u32,
 }
 
@@ -101,7 +101,7 @@ impl PositionAnswer {
         self.bits_with_crc(self.crc())
     }
 
-    /// The whole answer with some other CRC.
+    /// The whole answer with another CRC.
     pub fn bits_with_crc(&self, crc: u8) -> AnswerBits {
         let mut bits = AnswerBits::default();
         bits.push(true);
@@ -116,7 +116,7 @@ impl PositionAnswer {
 pub struct Parameter {
     /// MRS code, address or port.
     pub address: u8,
-    /// Parameter, or whatever goes with the 8 bits.
+    /// Parameter, or other data that follow the 8 bits.
     pub data: u16,
 }
 
@@ -170,12 +170,12 @@ pub struct Info {
     pub busy: bool,
     /// MRS code that selected it; its low five bits are sent.
     pub code: u8,
-    /// What it says.
+    /// Content.
     pub content: u16,
 }
 
 impl Info {
-    /// Length in bits, the leading LOW and the CRC included.
+    /// Length in bits, including the leading LOW and the CRC.
     pub const BITS: u32 = 30;
 
     /// The covered bits as two fields: status and code, content.
@@ -199,7 +199,7 @@ impl Info {
     }
 }
 
-/// What a bit of an answer is.
+/// Kind of an answer bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
     /// Start bit.

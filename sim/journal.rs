@@ -1,8 +1,8 @@
-//! What an encoder notes of its receiver: everything, or the last entries for one that runs for days.
+//! Notes of an encoder about its receiver: all entries, or only the last ones for long runs.
 
 use std::ops::Deref;
 
-/// A list of what happened, in order; reads as a slice of the entries that are kept.
+/// A list of events in order; dereferences to the slice of the kept entries.
 #[derive(Clone, Debug)]
 pub struct Journal<T> {
     kept: Vec<T>,
@@ -21,19 +21,19 @@ impl<T> Default for Journal<T> {
 }
 
 impl<T> Journal<T> {
-    /// Keeps at least so many of the last entries from now on, and at most twice as many.
+    /// From now on keeps at least the last `most` entries, and at most twice as many.
     pub fn keep(&mut self, most: usize) {
         self.most = most;
         self.forget();
     }
 
-    /// Notes something.
+    /// Adds an entry.
     pub fn push(&mut self, entry: T) {
         self.kept.push(entry);
         self.forget();
     }
 
-    /// How many entries there have been, forgotten ones included.
+    /// Number of all entries, including dropped ones.
     pub fn count(&self) -> u64 {
         self.forgotten + self.kept.len() as u64
     }

@@ -1,11 +1,10 @@
-//! The bench of the EnDat receiver core: everything the core talks to. Engines of [`rtl_design`] run the core.
+//! The bench of the EnDat receiver core: encoders, lines and hosts. Engines of [`rtl_design`] run the core.
 //!
-//! Time is real here: [`Time`] counts picoseconds, and nothing in the encoder or line model is quantised to the
+//! Time is continuous: [`Time`] counts picoseconds, and the models of encoder and line are not quantised to the
 //! system clock.
 
 pub mod bench;
 pub mod campaign;
-mod decimal;
 pub mod diagram;
 pub mod encoder;
 pub mod frame;
@@ -21,10 +20,9 @@ pub mod t_format;
 mod test_receiver;
 pub mod wave;
 
-pub use decimal::decimal;
 pub use journal::Journal;
 
-/// A moment or a span, in picoseconds.
+/// A point in time or a duration, in picoseconds.
 pub type Time = u64;
 /// Picoseconds in a nanosecond.
 pub const NS: Time = 1_000;

@@ -1,11 +1,11 @@
-//! A small seeded random source: the bench must give the same run for the same seed on every machine.
+//! A small seeded random generator: the bench must give the same run for the same seed on every machine.
 
-/// SplitMix64: one 64-bit counter and a mixing function. Good enough for jitter, far from good enough for secrets.
+/// SplitMix64: one 64-bit counter and a mixing function. Good enough for jitter, not for cryptography.
 #[derive(Clone, Debug)]
 pub struct Rng(u64);
 
 impl Rng {
-    /// A source that gives the same numbers for the same seed.
+    /// A generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -19,7 +19,7 @@ impl Rng {
         z ^ (z >> 31)
     }
 
-    /// A number in `low..=high`, every one (nearly) equally likely; `low` if the range is empty.
+    /// A number in `low..=high`, with (nearly) uniform probability; `low` if the range is empty.
     pub fn in_range(&mut self, low: u64, high: u64) -> u64 {
         let span = high.saturating_sub(low) as u128 + 1;
         low + ((self.next_u64() as u128 * span) >> 64) as u64

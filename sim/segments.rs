@@ -1,4 +1,4 @@
-//! A recorded DATA line cut into pieces: who drove it, to which level, and what it meant.
+//! A recorded DATA line divided into pieces with driver, level and meaning.
 
 mod places;
 
@@ -20,9 +20,9 @@ pub enum Level {
     Low,
     /// HIGH.
     High,
-    /// Nobody drives it.
+    /// Undriven.
     Floating,
-    /// Two drive it.
+    /// Driven by both ends.
     Conflict,
 }
 
@@ -37,21 +37,21 @@ impl Level {
     }
 }
 
-/// Who drives DATA.
+/// Driver of DATA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
     /// The receiver.
     Receiver,
     /// The encoder.
     Encoder,
-    /// Nobody.
+    /// None.
     Nobody,
     /// Both.
     Both,
 }
 
 impl By {
-    /// Its name.
+    /// Name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Receiver => "receiver",
@@ -62,18 +62,18 @@ impl By {
     }
 }
 
-/// What a piece of DATA means.
+/// Meaning of a piece of DATA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
     /// LOW between frames.
     Idle,
-    /// Nobody's turn, or not the one whose turn it is.
+    /// Undriven, or driven by the wrong end.
     Turnaround,
     /// Receiver's LOW before the mode command.
     LeadIn,
     /// Bit of the mode command, 5 = first sent.
     Command(u32),
-    /// What the receiver sends after an EnDat 2.1 command.
+    /// Field sent by the receiver after an EnDat 2.1 command.
     Parameter(Field),
     /// Encoder's LOW before the start bit.
     Wait,
@@ -83,13 +83,13 @@ pub enum Meaning {
     Pause,
     /// LOW bit before the start bit of a supplement, 1 = first sent.
     SupplementZero(u32),
-    /// What the receiver sends after an EnDat 2.2 answer.
+    /// Field sent by the receiver after an EnDat 2.2 answer.
     Supplement(Field),
     /// Encoder's LOW after a supplement.
     LeadOut,
     /// HIGH for the recovery time.
     Recovery,
-    /// An encoder that is not there.
+    /// No encoder.
     Absent,
     /// The level is a glitch.
     Glitch,
@@ -119,19 +119,19 @@ impl std::fmt::Display for Meaning {
 /// A piece of DATA without change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
-    /// Its begin.
+    /// Start.
     pub from: Time,
-    /// Its end; for the last one the end of the record.
+    /// End; for the last piece the end of the recording.
     pub until: Time,
-    /// Its level.
+    /// Level.
     pub level: Level,
-    /// Who drives it.
+    /// Driver.
     pub by: By,
-    /// What it means.
+    /// Meaning.
     pub meaning: Meaning,
 }
 
-/// Cuts DATA of a recorded link into pieces, as seen at one end, up to `until`.
+/// Divides DATA of a recorded link into pieces, as seen at one end, up to `until`.
 pub fn data_segments(link: &Link, end: End, until: Time) -> Vec<Segment> {
     let Some(trace) = link.trace() else {
         return Vec::new();
@@ -169,7 +169,7 @@ pub fn data_segments(link: &Link, end: End, until: Time) -> Vec<Segment> {
     segments
 }
 
-/// `flight` is how much later the encoder sees CLOCK.
+/// `flight` is the delay of CLOCK to the encoder.
 fn receiver_end(trace: &LinkTrace, frames: &[FrameLog], flight: Time) -> Vec<Segment> {
     let mut places = Places::new(&trace.clock_at_receiver, frames, flight);
     let piece = |c: &crate::line::DataChange| {
@@ -257,7 +257,7 @@ fn encoder_end(trace: &LinkTrace, frames: &[FrameLog]) -> Vec<Segment> {
     pieces
 }
 
-/// The receiver's bits have no marks of their own: equal neighbours are told apart by the falling edges that launch them.
+/// The receiver's bits are not marked: the falling edges that launch them separate equal neighbours.
 fn split_at_falls(pieces: &mut Vec<Segment>, clock: &[(Time, bool)], mut places: Places<'_>) {
     let mut split = Vec::new();
     let ends: Vec<Time> = pieces

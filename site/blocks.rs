@@ -2,8 +2,8 @@
 
 use crate::outline::BLOCKS;
 use crate::Page;
-use endat_gen::campaign::mutants::{subjects, Emission};
-use endat_gen::error::GenError;
+use endat_console::error::CommandError;
+use endat_workshop::mutants::{subjects, Emission};
 use rtl_design::elaborate::properties::properties;
 use rtl_design::elaborate::{Design, Direction, Module};
 use std::collections::{BTreeMap, BTreeSet};
@@ -27,10 +27,10 @@ impl Block<'_> {
 }
 
 /// The page of all blocks, and that of each.
-pub fn pages() -> Result<Vec<Page>, GenError> {
+pub fn pages() -> Result<Vec<Page>, CommandError> {
     let cards: Vec<(String, Design)> = subjects()
         .map(|card| Ok((card.to_owned(), Emission::named(card)?.subject.design)))
-        .collect::<Result<_, GenError>>()?;
+        .collect::<Result<_, CommandError>>()?;
     let blocks = all(&cards);
     let mut pages = vec![Page::new(BLOCKS, list(&blocks))];
     let each = blocks.values().map(|block| {

@@ -1,7 +1,7 @@
 //! Sources of the site on disk, and its HTML.
 
 use crate::{pages, Complaints, Page};
-use endat_gen::tools;
+use endat_tools::programs;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -65,7 +65,7 @@ pub(crate) fn build_of(
         fs::write(&path, &page.text).map_err(told(&path))?;
     }
     copy_pictures(&repository.join("docs"), &sources)?;
-    let ran = tools::run(MDBOOK, out, &["build"]).map_err(|e| e.messages().to_vec())?;
+    let ran = programs::run(MDBOOK, out, &["build"]).map_err(|e| e.messages().to_vec())?;
     match ran.is_good {
         true => Ok(out.join("html/index.html")),
         false => Err(vec![format!("{}: {}", MDBOOK, ran.text())]),

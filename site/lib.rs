@@ -79,7 +79,7 @@ fn names() -> impl Iterator<Item = &'static str> {
 }
 
 /// Pages that no file of the repository is.
-fn made() -> Result<Vec<Page>, endat_gen::error::GenError> {
+fn made() -> Result<Vec<Page>, endat_console::error::CommandError> {
     let mut pages = blocks::pages()?;
     pages.extend(reference::pages()?);
     Ok(pages)

@@ -16,7 +16,7 @@ pub const HOMES: [Home; 7] = [
     home("CHANGELOG.md", "changelog"),
     home("design/README.md", "design"),
     home("drivers/rust/README.md", "driver_in_rust"),
-    home("host/README.md", "host_library"),
+    home("drivers/host/README.md", "host_library"),
 ];
 
 const fn home(file: &'static str, page: &'static str) -> Home {

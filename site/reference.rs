@@ -2,14 +2,13 @@
 
 use crate::Page;
 use clap::Command;
-use endat_gen::cli::command_line;
-use endat_gen::config::load_preset;
-use endat_gen::error::GenError;
+use endat_config::load_preset;
+use endat_console::error::CommandError;
 use endat_regs::{causes, Protocol};
 use std::fmt::Write;
 
 /// All of them.
-pub fn pages() -> Result<Vec<Page>, GenError> {
+pub fn pages() -> Result<Vec<Page>, CommandError> {
     Ok(vec![
         Page::new("commands", commands()),
         Page::new("causes", causes_page()),
@@ -26,10 +25,12 @@ pub fn pages() -> Result<Vec<Page>, GenError> {
 
 /// What `--help` says of each command.
 fn commands() -> String {
-    let mut command = command_line().disable_help_subcommand(true).term_width(100);
-    command.build();
     let mut text = String::from("# Every command and option\n\nAs `--help` has them.\n");
-    all(&mut command, &mut text);
+    for program in [endat_gen::cli::command_line(), endat::command_line()] {
+        let mut command = program.disable_help_subcommand(true).term_width(100);
+        command.build();
+        all(&mut command, &mut text);
+    }
     text
 }
 
@@ -73,8 +74,8 @@ fn causes_page() -> String {
 }
 
 /// The register map of a preset's card, as it is emitted beside the card.
-fn registers(preset: &str, title: &str) -> Result<String, GenError> {
-    let files = endat_gen::emit(&load_preset(preset)?)?;
+fn registers(preset: &str, title: &str) -> Result<String, CommandError> {
+    let files = endat_emit::emit(&load_preset(preset)?)?;
     let map = files
         .iter()
         .find(|file| file.path.ends_with("_registers.md"));

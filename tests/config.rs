@@ -1,10 +1,10 @@
 //! Configuration files: what is refused, where, and with which remedy; and that nothing typed makes it panic.
 
-use endat_gen::config::{parse, Project};
-use endat_gen::error::Diagnostic;
+use endat_config::{parse, Project};
+use endat_console::error::Diagnostic;
 use proptest::prelude::*;
 
-const PRESET: &str = include_str!("../gen/presets/s6_two_channel.toml");
+const PRESET: &str = include_str!("../gen/config/presets/s6_two_channel.toml");
 
 /// The preset without its stream, with one piece of text replaced, and the line of the replacement. What a rate is too fast or a line too
 /// slow for is the stream first, which has tests of its own.
@@ -120,7 +120,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("sample_hz = 10_000", "sample_hz = 25_000", "takes up to 49.07 us, the largest part from recovery_max_ns = 30000, so at most 20379 Hz"),
         ("[\"pin\", \"timer\"]", "[\"pin\", \"button\"]", "trigger.sources = \"button\": unknown trigger; use pin, timer, register"),
         ("[\"pin\", \"timer\"]", "[\"pin\", \"pin\"]", "trigger.sources = \"pin\": stands twice"),
-        ("baud = 3_000_000", "baud = 9_000", "link.baud = 9000: outside 9600..3000000 (the most that the board passes on"),
+        ("baud = 3_000_000", "baud = 9_000", "link.baud = 9000: outside 9600..3000000 (the fastest rate that the board passes on"),
         ("baud = 3_000_000", "baud = 115_200", "the link is too slow: reading 62 bytes 1000 times a second takes 620000 bit/s"),
         ("baud = 3_000_000", "baud = 4_000_000", "link.baud = 4000000: outside 9600..3000000"),
         ("read_hz = 1_000", "read_hz = 0", "link.read_hz = 0: outside 1..1000000"),
@@ -560,7 +560,7 @@ fn judge(text: &str) -> Result<(), TestCaseError> {
     match parse("card.toml", text) {
         Ok(project) => {
             let project: Project = project;
-            prop_assert!(endat_gen::config::check_name(&project.name).is_ok());
+            prop_assert!(endat_config::check_name(&project.name).is_ok());
             prop_assert!(!project.card.channels.is_empty());
         }
         Err(found) => {
@@ -609,7 +609,7 @@ proptest! {
 
 #[test]
 fn single_brackets_and_the_bus_of_a_receiver_are_called_what_they_are() {
-    use endat_gen::config::parse_any;
+    use endat_config::parse_any;
     let from = PRESET.find("\n[[channel]]").unwrap() + 1;
     let line = PRESET[..from].matches('\n').count() + 1;
     let channel = &PRESET[from..][..PRESET[from + 1..].find("\n[").unwrap() + 2];

@@ -1,14 +1,14 @@
 //! The board top and its constraints: a strict reader of UCF, and real tools over the Verilog.
 
-use endat_gen::board::Board;
-use endat_gen::config::{load_preset, parse, Project};
+use endat_config::board::Board;
+use endat_config::{load_preset, parse, Project};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn text_of(project: &Project, end: &str) -> String {
-    let files = endat_gen::emit(project).unwrap();
+    let files = endat_emit::emit(project).unwrap();
     files
         .into_iter()
         .find(|a| a.path.ends_with(end))
@@ -196,7 +196,7 @@ fn every_port_of_the_preset_has_one_usable_pin_and_its_standard() {
 
 #[test]
 fn moved_pins_and_other_channel_counts_hold_too() {
-    let preset = include_str!("../gen/presets/s6_two_channel.toml");
+    let preset = include_str!("../gen/config/presets/s6_two_channel.toml");
     let moved = preset.replacen(
         "[pins]",
         "[pins]\ntrigger_i = \"A0\"\nendat_data0_i = \"P47\"",
@@ -431,7 +431,7 @@ pub fn lay_out(project: &Project, test: &str) -> (PathBuf, Vec<String>) {
     let folder = crate::tools::folder(&format!("constraints-{test}"));
     let primitives = format!("{PRIMITIVES}{}", include_str!("data/primitives.v"));
     let mut files = vec![("primitives.v".to_owned(), primitives)];
-    let emitted = endat_gen::emit(project).unwrap();
+    let emitted = endat_emit::emit(project).unwrap();
     files.extend(
         emitted
             .into_iter()

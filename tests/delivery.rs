@@ -4,6 +4,7 @@ mod boards;
 mod bus_card;
 mod comparison;
 mod constraints;
+mod cycle_time;
 mod documents;
 #[allow(dead_code)] // other topics take the rest
 mod emitted;
@@ -38,6 +39,7 @@ mod stream {
 }
 mod t_format {
     mod card {
+        mod program;
         mod refusals;
     }
 }

@@ -1,7 +1,7 @@
 //! Files of an emission, by the blocks that they hold.
 
-use endat_gen::artifact::Artifact;
-use endat_gen::readers::is_core;
+use endat_console::artifact::Artifact;
+use endat_tools::readers::is_core;
 use rtl_design::elaborate::block_name;
 use rtl_design::verilog::file_name;
 

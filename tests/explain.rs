@@ -2,7 +2,7 @@
 
 use crate::bases::BASES;
 use crate::program::{good, run, Dir};
-use endat_gen::config::{PRESETS, RECEIVER_PRESETS};
+use endat_config::{PRESETS, RECEIVER_PRESETS};
 use std::collections::BTreeSet;
 
 /// Words at the left of a report, and those above a table.

@@ -1,6 +1,6 @@
 //! A host at the UART of a card on its bench.
 
-use endat_gen::config::{parse, preset, Project};
+use endat_config::{parse, preset, Project};
 use endat_hdl::{
     config::CardConfig,
     regs::{Block, Register},

@@ -9,9 +9,9 @@ mod ports;
 mod zynq;
 
 use crate::tools::{self, require, require_all, require_python, run};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{load_any_preset, Configuration, Project};
-use endat_gen::emit;
+use endat_config::{load_any_preset, Configuration, Project};
+use endat_console::artifact::Artifact;
+use endat_emit::emit;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -43,7 +43,7 @@ fn preset(name: &str) -> Vec<Artifact> {
     match load_any_preset(name).unwrap() {
         Configuration::Card(card) => emit(&card).unwrap(),
         Configuration::Receiver(receiver) => {
-            endat_gen::protocols::t_format::emit(&receiver).unwrap()
+            endat_emit::protocols::t_format::emit(&receiver).unwrap()
         }
     }
 }
@@ -205,7 +205,7 @@ fn the_vivado_script_names_bus_clock_reset_and_interrupt() {
     for ((bus, interface, signals), (line, bound)) in rows.into_iter().zip(lines) {
         let text =
             crate::bus_card::text(bus, &format!("[outputs]\nparts = [\"interrupt\"]\n{line}"));
-        let project = endat_gen::config::parse("card.toml", &text).unwrap();
+        let project = endat_config::parse("card.toml", &text).unwrap();
         let folder = written(&emit(&project).unwrap(), &format!("vivado-{interface}"));
         let told = packaged(&project.name, &folder);
         let wanted = format!(
@@ -250,7 +250,7 @@ open('sources', 'w').write(' '.join(core.SOURCES))
 #[test]
 fn the_c_example_reads_positions() {
     use crate::hosts::{slow_card, Served};
-    use endat_gen::virtual_card::Door;
+    use endat_card::Door;
     if !require("gcc", "C example") {
         return;
     }

@@ -1,6 +1,6 @@
 //! Cards in native code, each made once per process: elaboration and code generation take longer than most simulations.
 
-use endat_gen::config::Project;
+use endat_config::Project;
 use endat_hdl::card::uart_bridge::TIMEOUT_US;
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::config::CardConfig;
@@ -37,7 +37,7 @@ pub fn card(project: &Project) -> Compiled {
 pub fn card_with(project: &Project, times: &ServiceTimes, timeout_us: u64) -> Compiled {
     let (bus, card) = (project.bus, &project.card);
     once(format!("{bus:?} {times:?} {timeout_us} {card:?}"), || {
-        endat_gen::design_with(project, times, timeout_us).unwrap()
+        endat_emit::design_with(project, times, timeout_us).unwrap()
     })
 }
 

@@ -1,11 +1,11 @@
 //! `new`: questions, and the configurations that come of them.
 
 use crate::program::{bad, good, program, run, Dir};
-use endat_gen::board::{self, Board};
-use endat_gen::cli::Outcome;
-use endat_gen::config::keys::{self, ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES};
-use endat_gen::config::{parse, parse_any, parse_on, Configuration};
-use endat_gen::json_schema::plain;
+use endat_config::board::{self, Board};
+use endat_config::json_schema::plain;
+use endat_config::keys::{self, ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES};
+use endat_config::{parse, parse_any, parse_on, Configuration};
+use endat_terminal::outcome::Outcome;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::process::{Output, Stdio};
@@ -85,10 +85,16 @@ fn every_way_through_the_questions_gives_a_good_configuration() {
         }
         // What counts without a key changes nothing where it is written.
         let lines: Vec<&str> = text.lines().collect();
-        let mut table = 0;
+        // None at the top of the file.
+        let mut table = None;
         for (n, line) in lines.iter().enumerate() {
-            if line.trim_start_matches("# ").starts_with('[') {
-                table = n;
+            let plain = line.trim_start_matches("# ");
+            let head = plain.trim_start_matches('[');
+            if head.len() < plain.len()
+                && head.starts_with(char::is_alphabetic)
+                && head.contains(']')
+            {
+                table = Some(n);
             }
             let said = line
                 .strip_prefix("# ")
@@ -102,10 +108,13 @@ fn every_way_through_the_questions_gives_a_good_configuration() {
             }
             let mut changed: Vec<&str> = lines.clone();
             changed[n] = said;
-            changed[table] = changed[table].trim_start_matches("# ");
+            if let Some(table) = table {
+                changed[table] = changed[table].trim_start_matches("# ");
+            }
             // A trigger of its own is logic of its own, whatever is said of it.
             let is_own = ["enabled", "divider"].contains(&said.split(' ').next().unwrap());
-            let is_own = is_own || lines[table].starts_with("[[") && said.starts_with("sources");
+            let is_own = is_own
+                || table.is_some_and(|n| lines[n].starts_with("[[")) && said.starts_with("sources");
             let with = parse_any("new.toml", &(changed.join("\n") + "\n"));
             let with = with.unwrap_or_else(|wrong| panic!("{way:?}: {said}: {wrong:?}"));
             let hash = |c: &Configuration| match c {
@@ -166,7 +175,7 @@ fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
     assert!(next.contains("mine.toml: written"), "{next}");
     assert!(next.contains("endat-gen emit --config mine.toml"), "{next}");
     let path = dir.path("mine.toml");
-    let card = endat_gen::config::load_file(path.as_ref()).unwrap();
+    let card = endat_config::load_file(path.as_ref()).unwrap();
     assert_eq!(card.card.channels.len(), 2);
     assert_eq!(card.encoders, ["ROD 1", "ROD 1"]);
     assert_eq!(card.card.channels[1].spec.clock_hz, 4_000_000);

@@ -1,7 +1,7 @@
 //! Cards whose channels have triggers of their own: configuration, results, stream, files.
 
 use crate::bus::Master;
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::regs::{CARD, CARD_CONFIG, RESULT};
 use endat_host::stream::{Decoder, SampleSet};
 
@@ -150,7 +150,7 @@ fn a_card_without_own_triggers_has_no_logic_for_them() {
     let project = parse("card.toml", &plain).unwrap();
     assert!(!project.card.own_triggers());
     let has_it = |project| {
-        let files = endat_gen::emit(project).unwrap();
+        let files = endat_emit::emit(project).unwrap();
         crate::emitted::has_block(&files, "channel_trigger")
     };
     assert!(!has_it(&project));

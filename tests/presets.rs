@@ -5,7 +5,7 @@
 
 use crate::made;
 use crate::stream_rig::{Set, FRESH, MISSING, TAKEN, VALID};
-use endat_gen::config::{load_preset, Project, PRESETS};
+use endat_config::{load_preset, Project, PRESETS};
 use endat_hdl::card::service_times;
 use endat_hdl::card::uart::BIT_CYCLES_MIN;
 use endat_hdl::config::{CardConfig, ChannelConfig, StreamStart, DELAY_NS_PER_M};

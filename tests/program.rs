@@ -1,10 +1,12 @@
 //! Running the program: in this process, or as a process of its own.
 
-use endat_gen::cli::{self, Outcome};
+use endat_terminal::outcome::Outcome;
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 
 /// A folder of its own for one test, emptied before use.
 pub struct Dir(pub PathBuf);
@@ -41,8 +43,29 @@ impl Dir {
     }
 }
 
+/// The program that has a command: the generator, unless only another one has it.
+pub fn program_of(command: &str) -> &'static str {
+    let others = [
+        ("endat", endat::command_line()),
+        ("endat-workshop", endat_workshop::cli::command_line()),
+    ];
+    let has = |line: &clap::Command| line.find_subcommand(command).is_some();
+    let other = others.iter().find(|(_, line)| has(line));
+    match other {
+        Some((name, _)) if !has(&endat_gen::cli::command_line()) => name,
+        _ => "endat-gen",
+    }
+}
+
+/// Runs the program that has the command in this process.
 pub fn run(arguments: &[&str]) -> Outcome {
-    cli::run(std::iter::once("endat-gen").chain(arguments.iter().copied()))
+    let program = program_of(arguments.first().unwrap_or(&""));
+    let words = std::iter::once(program).chain(arguments.iter().copied());
+    match program {
+        "endat" => endat::run(words),
+        "endat-workshop" => endat_workshop::cli::run(words),
+        _ => endat_gen::cli::run(words),
+    }
 }
 
 pub fn good(arguments: &[&str]) -> String {
@@ -64,7 +87,34 @@ pub fn bad(arguments: &[&str], exit_code: u8) -> String {
 }
 
 pub fn program() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_endat-gen"))
+    Command::new(GENERATOR)
+}
+
+/// The generator as a process.
+pub const GENERATOR: &str = env!("CARGO_BIN_EXE_endat-gen");
+
+/// Path of the program of another package, next to the generator; cargo builds it if it is not there or old.
+fn built(package: &'static str) -> PathBuf {
+    static BUILT: Mutex<BTreeSet<&str>> = Mutex::new(BTreeSet::new());
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    if built.insert(package) {
+        let cargo = Command::new(env!("CARGO"))
+            .args(["build", "--quiet", "--package", package])
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .status();
+        assert!(cargo.unwrap().success(), "cargo build --package {package}");
+    }
+    PathBuf::from(GENERATOR).with_file_name(format!("{package}{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// Path of the program `endat`.
+pub fn endat_path() -> PathBuf {
+    built("endat")
+}
+
+/// The program `endat` as a process.
+pub fn endat() -> Command {
+    Command::new(endat_path())
 }
 
 /// Sends a signal by its name to a process. The shell's own command is on every machine, a program of that name is not.

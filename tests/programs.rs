@@ -5,7 +5,6 @@ mod bus_card;
 mod campaign;
 mod cli;
 mod commands;
-mod cycle_time;
 mod hosts;
 mod integrators;
 #[allow(dead_code)] // other topics take the rest

@@ -1,11 +1,14 @@
 //! The Python package: as a wheel, installed in an environment of its own, its tests, its types.
 
+use crate::program::endat_path;
 use crate::tools;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/drivers/python");
+const TESTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/drivers/python/tests");
 
 /// What the tests import; plain `pip install endat` takes numpy alone.
 const MODULES: [&str; 8] = [
@@ -59,32 +62,45 @@ fn installed(test: &str, check: &str) -> Option<(PathBuf, PathBuf)> {
     let name = wheel.file_name().unwrap().to_str().unwrap();
     let begin = format!("endat-{}-cp310-abi3-", env!("CARGO_PKG_VERSION"));
     assert!(name.starts_with(&begin), "{name}: not {begin}...");
+    // Its own pip would take longer than all that is installed.
     done(
         Command::new("python3")
-            .args(["-m", "venv", "--system-site-packages"])
+            .args(["-m", "venv", "--system-site-packages", "--without-pip"])
             .arg(&environment),
     );
     let python = environment.join("bin/python");
     done(
-        Command::new(&python)
-            .args(["-m", "pip", "install", "--quiet", "--no-deps", "--no-index"])
+        Command::new("python3")
+            .args(["-m", "pip", "--python"])
+            .arg(&python)
+            .args(["install", "--quiet", "--no-deps", "--no-index"])
             .arg(&wheel),
     );
     Some((dir, python))
 }
 
-/// The tests of the package, from another folder, so that the sources are not what is imported.
-fn pytest(dir: &Path, python: &Path, more: &[&str]) {
-    let tests = format!("{FOLDER}/tests");
+/// The tests of the package with these arguments, from another folder, so that the sources are not what is imported.
+fn pytest(dir: &Path, python: &Path, arguments: &[&str]) {
     done(
         Command::new(python)
             .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
-            .args(more)
-            .arg(&tests)
-            .env("ENDAT_GEN", env!("CARGO_BIN_EXE_endat-gen"))
-            .env("ENDAT_SERVICE", crate::hosts::quick_service_file())
+            .args(arguments)
+            .env("ENDAT", endat_path())
+            .env("ENDAT_SERVICE", crate::hosts::quicker_service_file())
             .current_dir(dir),
     );
+}
+
+/// The installed types, in the strict reading of somebody who uses them.
+fn mypy(dir: &Path, python: &Path) {
+    for what in [&[TESTS][..], &["-p", "endat"]] {
+        done(
+            Command::new(python)
+                .args(["-m", "mypy", "--strict", "--cache-dir", "cache"])
+                .args(what)
+                .current_dir(dir),
+        );
+    }
 }
 
 /// Catches whatever breaks the package: a wheel without a file, a changed library, a promise in the types that is not kept.
@@ -94,17 +110,13 @@ fn the_python_package_is_built_installed_tested_and_typed() {
     let Some((dir, python)) = installed("python", check) else {
         return;
     };
-    pytest(&dir, &python, &[]);
-    // The installed types, in the strict reading of somebody who uses them.
-    let tests = format!("{FOLDER}/tests");
-    for what in [&[tests.as_str()][..], &["-p", "endat"]] {
-        done(
-            Command::new(&python)
-                .args(["-m", "mypy", "--strict", "--cache-dir", "cache"])
-                .args(what)
-                .current_dir(&dir),
-        );
-    }
+    // They wait more than they compute, so they run beside each other: the tests of the card itself take half of the time.
+    let card = format!("{TESTS}/test_card.py");
+    thread::scope(|scope| {
+        scope.spawn(|| pytest(&dir, &python, &[&card]));
+        scope.spawn(|| pytest(&dir, &python, &[TESTS, "--ignore", &card]));
+        scope.spawn(|| mypy(&dir, &python));
+    });
     fs::remove_dir_all(&dir).unwrap();
 }
 
@@ -112,7 +124,7 @@ fn the_python_package_is_built_installed_tested_and_typed() {
 #[ignore = "slow: the Python package records an hour, and runs notebook and tutorial as printed"]
 fn the_python_package_records_an_hour() {
     if let Some((dir, python)) = installed("python-slow", "slow tests of the Python package") {
-        pytest(&dir, &python, &["-m", "slow"]);
+        pytest(&dir, &python, &[TESTS, "-m", "slow"]);
         fs::remove_dir_all(&dir).unwrap();
     }
 }

@@ -35,7 +35,7 @@ struct Builder {
     through: Vec<BTreeMap<usize, BTreeSet<usize>>>,
 }
 
-/// What a child block is.
+/// Kind of a child block.
 enum Kind {
     Register {
         is_synchroniser: bool,
@@ -280,7 +280,7 @@ impl Builder {
         let name = verilog_name(&child.name);
         let enum_id = self.intern_enums(&mut draft.enums, &draft.block.docs, &d.descriptor);
         let q = draft.net(name.clone(), d.width_bits, enum_id, draft.docs(&child.name));
-        // What a flip-flop is given is called d where a field has the better name.
+        // The input of a flip-flop is called d if a field already has the better name.
         let free_name = draft.free_name_of(["next", "d"].map(|end| format!("{name}_{end}")));
         let next = draft.net(free_name, d.width_bits, enum_id, vec![]);
         let free_name = draft.free_name(&format!("{name}_clock"));

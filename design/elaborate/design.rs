@@ -26,7 +26,7 @@ pub fn mask(width_bits: usize) -> u128 {
     }
 }
 
-/// A whole elaborated design. Modules stand before the modules that they instantiate: the top comes first.
+/// A complete elaborated design. Modules precede the modules that they instantiate: the top comes first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Design {
     /// One module per distinct block type and parameters; the first is the top.
@@ -69,7 +69,7 @@ pub struct Module {
     pub type_name: String,
     /// Rust documentation of the block type, line by line.
     pub docs: Vec<String>,
-    /// What is proved about it: SystemVerilog over the names of its nets, see [`properties`](super::properties).
+    /// Properties to prove: SystemVerilog over the names of its nets, see [`properties`](super::properties).
     pub properties: String,
     /// Every net, ports included.
     pub nets: Vec<Net>,
@@ -83,7 +83,7 @@ pub struct Module {
     pub memories: Vec<Memory>,
     /// Child modules.
     pub instances: Vec<Instance>,
-    /// Combinational processes; each net has one driver at most. A process stands after those that it reads.
+    /// Combinational processes; each net has at most one driver. A process follows the processes that it reads.
     pub processes: Vec<Process>,
 }
 
@@ -114,7 +114,7 @@ pub enum Direction {
 pub struct Port {
     /// The net of the same name.
     pub net: NetId,
-    /// Who drives it.
+    /// Direction.
     pub direction: Direction,
     /// Whether it is a clock.
     pub is_clock: bool,
@@ -146,7 +146,7 @@ pub struct Register {
     pub reset: Option<NetId>,
     /// Value at power-up and after reset.
     pub start: u128,
-    /// Whether it is a synchroniser stage, to be kept a flip-flop of its own.
+    /// True for a synchroniser stage, which must stay a separate flip-flop.
     pub is_synchroniser: bool,
     /// Whether it works on the falling edge.
     pub on_fall: bool,
@@ -159,11 +159,11 @@ pub struct Instance {
     pub name: String,
     /// The child.
     pub module: ModuleId,
-    /// What each port of the child is connected to, in port order.
+    /// Connections of the child's ports, in port order.
     pub connections: Vec<Connection>,
 }
 
-/// What a port of an [`Instance`] is connected to.
+/// Connection of a port of an [`Instance`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Connection {
     /// Direction of the port, seen from the child.
@@ -175,7 +175,7 @@ pub struct Connection {
 /// Statements that drive a set of nets, in order; later assignments replace earlier ones.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Process {
-    /// What it does.
+    /// Statements.
     pub statements: Vec<Statement>,
 }
 
@@ -184,11 +184,11 @@ pub struct Process {
 pub struct Expr {
     /// Width in bits.
     pub width_bits: usize,
-    /// What it computes.
+    /// Operation.
     pub kind: ExprKind,
 }
 
-/// What an expression computes.
+/// Operation of an expression.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ExprKind {
     /// A literal.

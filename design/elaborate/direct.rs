@@ -105,7 +105,7 @@ impl Draft<'_> {
                 replace(net);
             }
         }
-        // What could not be replaced (a constant, a part of a net) stays an assignment.
+        // A net that could not be replaced (a constant, a part of a net) remains an assignment.
         let mut used: BTreeSet<NetId> = BTreeSet::new();
         for register in &self.module.registers {
             used.extend(register.reset.iter().chain([&register.clock]));

@@ -1,12 +1,12 @@
 //! Documentation of blocks, their parts and the states of their enums.
 //!
-//! rust-hdl's tree carries neither documentation nor the names of types. The only text that a block has for free is the list of its
-//! timings, so [`kernel`](crate::kernel) hands on there what [`Block`](macro@crate::Block) and
-//! [`States`](crate::States) have noted.
+//! rust-hdl's tree has neither documentation nor the names of types. The only text that a block can carry is the list of its
+//! timings, in which [`kernel`](crate::kernel) passes on the notes of [`Block`](macro@crate::Block) and
+//! [`States`](crate::States).
 
 use rust_hdl::prelude::TimingInfo;
 
-/// What is written about a block or an enum.
+/// Documentation of a block or an enum.
 #[derive(Clone, Copy, Debug)]
 pub struct TypeDocs {
     /// Its name, without module and parameters.
@@ -17,9 +17,9 @@ pub struct TypeDocs {
     pub parts: &'static [(&'static str, &'static [&'static str])],
     /// Fields that are lists of at most one signal, whose name has no number.
     pub optional: &'static [&'static str],
-    /// Fields that are bundles of ports, what comes behind the ports' names, and what is written about them.
+    /// Fields that are bundles of ports, the suffix of the ports' names, and their documentation.
     pub bundles: &'static [(&'static str, &'static str, &'static TypeDocs)],
-    /// What is proved about it: SystemVerilog, see [`properties`](super::properties). Empty where there is nothing.
+    /// Properties to prove: SystemVerilog, see [`properties`](super::properties). Empty without properties.
     pub properties: &'static str,
     /// Enums among the types of its fields.
     pub enums: &'static [&'static TypeDocs],
@@ -108,7 +108,7 @@ pub(super) fn optional_of(timings: &[TimingInfo]) -> Vec<String> {
     found.map_or(vec![], |t| t.inputs.clone())
 }
 
-/// Bundles among the timings of a block: the field, and what comes behind the names of its ports.
+/// Bundles among the timings of a block: the field, and the suffix of its ports' names.
 pub(super) fn bundles_of(timings: &[TimingInfo]) -> Vec<(String, String)> {
     let found = timings.iter().filter(|t| t.name == BUNDLE_TIMING);
     found

@@ -21,7 +21,7 @@ pub(super) struct Draft<'a> {
     pub fields: HashMap<&'a str, &'a [String]>,
     /// Names of the child blocks.
     pub child_names: Vec<String>,
-    /// Nets that stand for an input of a child (or of a register), with what to call them in a message.
+    /// Nets for an input of a child (or of a register), with the name for messages.
     pub child_inputs: Vec<(NetId, String)>,
     /// For each child block, the nets of its ports.
     pub ports_of_child: Vec<Vec<NetId>>,

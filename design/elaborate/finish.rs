@@ -85,8 +85,8 @@ fn name_modules(design: &mut Design, top_name: &str) {
     }
 }
 
-/// What tells modules of one block type apart: the first width or constant that differs in all of them, or else a number.
-/// Start values of registers are no part of a name: they may be as long as the register.
+/// Suffixes that distinguish modules of one block type: the first width or constant that differs in all of them, or else a number.
+/// Start values of registers are not part of a name: they may be as long as the register.
 fn suffixes(design: &Design, ids: &[ModuleId]) -> Vec<String> {
     if ids.len() == 1 {
         return vec![String::new()];
@@ -130,7 +130,7 @@ fn facts(design: &Design, id: ModuleId) -> BTreeMap<String, String> {
     }
     for parameter in &module.parameters {
         let key = parameter.name.to_lowercase();
-        // A feature is named where it is there.
+        // A feature is named only where it is present.
         let fact = match (parameter.width_bits, parameter.value) {
             (1, 0) => String::new(),
             (1, _) => key.clone(),

@@ -1,8 +1,8 @@
 //! Processes of different modules that feed each other.
 //!
-//! Without a loop between nets there can still be one between processes: a process with two ways through it, one
-//! behind the other by way of its surroundings. Simulators that run a process whole would see its defaults as glitches and
-//! never come to rest. Such processes are taken apart, until every process runs after all that it reads.
+//! Without a loop between nets there may still be one between processes: a process with two paths that are connected
+//! outside of it. A simulator that runs a whole process would see its defaults as glitches and
+//! never settle. Such processes are split until every process runs after all processes that it reads.
 
 use super::design::{Design, ExprKind, Module, ModuleId, NetId};
 use super::plan::split;
@@ -94,7 +94,7 @@ impl Flat {
                     });
                 });
             }
-            // What it reads of its own are the values in between.
+            // Its reads of its driven nets are intermediate values.
             reads.retain(|net| !drives.contains(net));
             self.nodes.push(Node {
                 process: Some((id, index)),

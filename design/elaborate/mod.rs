@@ -5,8 +5,8 @@
 //!    tree                   scope, index                        expr              plan       build
 //! ```
 //!
-//! Every width is the one that the Rust simulation computes with. What has no exact meaning is an
-//! [`ElaborateError`] that names block, field and remedy.
+//! Every width equals that of the Rust simulation. A construct without an exact meaning is an
+//! [`ElaborateError`] with block, field and remedy.
 
 mod build;
 mod design;
@@ -43,9 +43,9 @@ pub struct ElaborateError {
     pub block: String,
     /// Field or statement in it.
     pub field: String,
-    /// What is wrong.
+    /// Problem.
     pub problem: String,
-    /// What to write instead.
+    /// Remedy.
     pub remedy: String,
 }
 

@@ -277,7 +277,7 @@ pub(crate) fn free_name<'a>(
     names: impl IntoIterator<Item = String>,
     taken: impl Iterator<Item = &'a String> + Clone,
 ) -> String {
-    // Verilog tells small letters from capitals, VHDL does not.
+    // Verilog is case-sensitive, VHDL is not.
     let is_free = |name: &str| !taken.clone().any(|taken| taken.eq_ignore_ascii_case(name));
     let mut last = String::new();
     for name in names {

@@ -5,9 +5,9 @@ use super::design::{mask, BinaryOp, Expr, ExprKind, NetId};
 /// Some bits of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Piece {
-    /// Where its lowest bit stands.
+    /// Index of its lowest bit.
     pub low_bit: usize,
-    /// What stands there.
+    /// Content.
     pub expr: Expr,
 }
 
@@ -50,7 +50,7 @@ impl Piece {
 /// A mask with more runs of ones than this reads better as a mask.
 const RUNS_MAX: usize = 2;
 
-/// The runs of ones in a number: first bit, and the one behind the last.
+/// The runs of ones in a number: first bit, and end (exclusive).
 fn runs(bits: u128) -> Vec<(usize, usize)> {
     let is_one = |place: usize| place < 128 && bits >> place & 1 == 1;
     let starts = (0..128).filter(|place| is_one(*place) && (*place == 0 || !is_one(place - 1)));
@@ -63,7 +63,7 @@ fn runs(bits: u128) -> Vec<(usize, usize)> {
     starts.map(run).collect()
 }
 
-/// What an expression puts side by side, lowest first; bits of no piece are 0. `None` if it puts nothing together.
+/// Concatenated parts of an expression, lowest first; bits without a piece are 0. `None` if it is not a concatenation.
 pub(crate) fn row(expr: &Expr) -> Option<Vec<Piece>> {
     if !matches!(
         expr.kind,
@@ -76,7 +76,7 @@ pub(crate) fn row(expr: &Expr) -> Option<Vec<Piece>> {
     (!is_one).then_some(row)
 }
 
-/// The pieces of an expression, lowest first; bits of none are 0. What is no such row is one piece.
+/// The pieces of an expression, lowest first; other bits are 0. An expression that is not a concatenation is one piece.
 fn pieces(expr: &Expr) -> Vec<Piece> {
     let mut row = apart(expr).unwrap_or_else(|| {
         vec![Piece {

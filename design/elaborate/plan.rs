@@ -43,7 +43,7 @@ pub(super) fn plan(
     Ok((processes, targets.depends))
 }
 
-/// What each target of statements depends on.
+/// Nets on which each target of statements depends.
 pub(super) fn dependencies(statements: &[Statement]) -> Dependencies {
     Targets::new(statements).depends
 }
@@ -70,7 +70,7 @@ pub(super) fn split(statements: &[Statement]) -> Vec<Process> {
     order.iter().map(part).collect()
 }
 
-/// What the kernel assigns, and when.
+/// Targets of the kernel's assignments, and their order.
 struct Targets {
     /// First and last top-level statement that assigns a net.
     span: BTreeMap<NetId, (usize, usize)>,
@@ -339,8 +339,8 @@ fn reads(processes: &[(NetId, BTreeSet<usize>)], from: usize, to: usize) -> bool
 }
 
 impl Targets {
-    /// Whether `class` and a member of `process` read each other before the first assignment: such a read means
-    /// the final value, so it must stand in another process.
+    /// True if `class` and a member of `process` read each other before the first assignment: such a read means
+    /// the final value, so it must be in another process.
     fn is_read_early(
         &self,
         class: NetId,

@@ -1,11 +1,11 @@
-//! Properties of blocks: what is proved about them, in the file that `#[properties("x.sv")]` names.
+//! Properties of blocks: claims to prove, in the file named by `#[properties("x.sv")]`.
 //!
-//! Such a file is SystemVerilog over the emitted names of the block's nets and goes to the end of its module, below `` `ifdef FORMAL ``.
-//! It begins with a line for each property, `// name: words`, or `// name unless CONSTANT (what it is), ...: words` where it is not claimed
-//! of a block in which one of these constants is not 0; assertions are labelled with the name of theirs, lemmas that it takes with
-//! `name_lemma`. What follows `` `ifdef FORMAL_ANY_STATE `` holds whatever the registers begin with, and is proved apart. Registers
-//! that only a proof has begin with `f_`. What stands between the lines `// with CONSTANT`, or `// without CONSTANT`, and `// end` is left
-//! out of a block in which the constant is 0, or is not.
+//! Such a file is SystemVerilog over the emitted names of the block's nets and is appended to its module, below `` `ifdef FORMAL ``.
+//! It begins with a line for each property, `// name: words`, or `// name unless CONSTANT (meaning), ...: words` if it is not claimed
+//! for a block in which one of these constants is not 0. Assertions are labelled with the name of their property, required lemmas with
+//! `name_lemma`. Properties after `` `ifdef FORMAL_ANY_STATE `` hold for any register contents, and are proved separately. Registers
+//! of the proof begin with `f_`. Lines between `// with CONSTANT`, or `// without CONSTANT`, and `// end` are left
+//! out of a block in which the constant is 0, or is not 0.
 
 use super::Module;
 use std::collections::BTreeSet;
@@ -24,7 +24,7 @@ pub enum Begins {
 pub struct Property {
     /// Its name: label of its assertion.
     pub name: String,
-    /// What it says.
+    /// Claim.
     pub words: String,
     /// From where.
     pub begins: Begins,
@@ -39,7 +39,7 @@ pub struct Property {
 pub struct Exception {
     /// The constant of the block that says so.
     pub constant: String,
-    /// What it is, in words.
+    /// Meaning.
     pub words: String,
 }
 
@@ -64,13 +64,13 @@ impl Property {
     }
 }
 
-/// The condition below which properties of any state stand.
+/// The condition for properties of any state.
 pub const ANY_STATE: &str = "FORMAL_ANY_STATE";
 
 /// The name of the line that says which inputs are assumed to be less than anything.
 const INPUTS: &str = "inputs";
 
-/// What is assumed of the inputs of a block with this text, if anything: its line `// inputs: words`.
+/// Assumptions about the inputs of a block with this text, if any: its line `// inputs: words`.
 pub fn inputs(text: &str) -> Option<&str> {
     let mut lines = text.lines();
     lines.find_map(|line| {

@@ -17,7 +17,7 @@ use std::collections::HashMap;
 
 type Result<T> = std::result::Result<T, ElaborateError>;
 
-/// What a name in a kernel stands for.
+/// Meaning of a name in a kernel.
 #[derive(Clone, Debug)]
 pub(super) enum Symbol {
     Net {
@@ -39,7 +39,7 @@ pub(super) struct Scope<'a> {
     pub block_enums: Vec<EnumId>,
     /// Variables of the loops around the present statement.
     pub loops: Vec<(String, usize)>,
-    /// Within a loop, behind its first round: what is written there has been said.
+    /// Within a loop after its first round: its comments have been emitted.
     pub is_repeated: bool,
 }
 
@@ -153,7 +153,7 @@ impl Scope<'_> {
                 }
                 self.is_repeated = is_repeated;
             }
-            // Handed on to the statement behind it.
+            // Passed on to the next statement.
             VerilogStatement::Comment(_) => {}
             VerilogStatement::Link(links) => {
                 for link in links {

@@ -32,13 +32,13 @@ pub(super) struct BlockNode {
     pub fields: Vec<String>,
     pub hdl: Verilog,
     pub timing: Vec<TimingInfo>,
-    /// Of the block, if it has any, and of its enums.
+    /// Documentation of the block, if any, and of its enums.
     pub docs: Vec<Docs>,
     /// Lists of at most one signal.
     optional: Vec<String>,
-    /// Bundles, and what comes behind the names of their ports.
+    /// Bundles, and the suffix of their ports' names.
     bundles: Vec<(String, String)>,
-    /// What is proved about it.
+    /// Properties to prove.
     pub properties: String,
 }
 
@@ -97,7 +97,7 @@ impl BlockNode {
         let Some((_, suffix)) = self.bundles.iter().find(|(bundle, _)| bundle == field) else {
             return verilog_name(key);
         };
-        // A port of a list of bundles has its number behind its name.
+        // A port of a list of bundles has its number after its name.
         match rest.split_once('$') {
             Some((number, port)) => verilog_name(&format!("{port}{suffix}${number}")),
             None => verilog_name(&format!("{rest}{suffix}")),

@@ -1,4 +1,4 @@
-//! A design without hierarchy: every net of every instance has a number of its own.
+//! A design without hierarchy: every net of every instance has a separate number.
 
 use super::{EngineError, Port};
 use crate::elaborate::{

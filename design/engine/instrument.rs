@@ -5,7 +5,7 @@ use super::EngineError;
 use crate::elaborate::{BinaryOp, Design, Expr, ExprKind, Statement, UnaryOp};
 use std::collections::btree_map::{BTreeMap, Entry};
 
-/// What is built in besides the design.
+/// Optional instruments of an engine.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Instruments {
     /// Hierarchical names of nets that can be forced.
@@ -67,7 +67,7 @@ pub(super) fn fit(
     for name in &instruments.forced {
         let net = flat.nets.iter().position(|n| n.name == *name);
         let net = net.ok_or_else(|| EngineError::UnknownNet(name.clone()))?;
-        // A second one would stand between the first one and the readers.
+        // A second force would be inserted between the first one and the readers.
         if let Entry::Vacant(place) = fitted.forces.entry(net) {
             place.insert(force(flat, net));
         }

@@ -1,4 +1,4 @@
-//! The plain engine: executes a [`Design`] as it stands, cycle by cycle.
+//! The simple engine: executes a [`Design`] without transformation, cycle by cycle.
 //!
 //! The hierarchy is flattened once, processes are put into an order in which each reads only what is already
 //! settled, and every statement becomes a few operations on numbered values.

@@ -88,11 +88,11 @@ type Found<B> = Box<dyn Fn(&mut B) -> &mut dyn Pin>;
 
 /// Ports that travel together, see [`macro@crate::ports`].
 pub trait Bundle: Sized + 'static {
-    /// Of each its name, whether the block takes it, and where it is.
+    /// Name of each port, true if the block reads it, and its access function.
     const PINS: &'static [(&'static str, bool, Access<Self>)];
 }
 
-/// Runs a block with a settle loop of its own: no threads, no events.
+/// Runs a block with a simple settle loop: no threads, no events.
 ///
 /// ```
 /// # use rtl_design::engine::{Engine, KernelEngine};
@@ -140,7 +140,7 @@ impl<B: Block + 'static> KernelEngine<B> {
         self.port_access(name, false, access)
     }
 
-    /// Names all ports of a bundle, with `suffix` behind their own names.
+    /// Names all ports of a bundle, with `suffix` appended to their names.
     #[must_use]
     pub fn bundle<P: Bundle>(mut self, suffix: &str, bundle: fn(&mut B) -> &mut P) -> Self {
         for &(name, is_input, access) in P::PINS {

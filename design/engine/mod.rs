@@ -1,4 +1,4 @@
-//! Engines that run a design, one clock cycle at a time, behind one trait.
+//! Engines that run a design, one clock cycle at a time, with a common trait.
 
 mod compiled;
 mod flat;
@@ -61,7 +61,7 @@ pub trait Engine {
     fn set(&mut self, port: PortId, value: u128);
     /// The settled value of a port, with the present inputs and register contents.
     fn get(&mut self, port: PortId) -> u128;
-    /// One falling edge of the clock, in the middle of a cycle: registers that work on it take what stands at their inputs.
+    /// One falling edge of the clock, in the middle of a cycle: registers for this edge sample their inputs.
     ///
     /// Without a call, [`Engine::tick`] does it first: then inputs change with the rising edge only.
     fn fall(&mut self);

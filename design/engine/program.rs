@@ -104,7 +104,7 @@ impl Program {
                     self.changed(*target, stale);
                 }
             }
-            // What a process computes for itself does not make it stale.
+            // The process's own outputs do not make it stale.
             stale[index] = false;
         }
     }

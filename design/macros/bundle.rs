@@ -85,7 +85,7 @@ fn is_driven(field: &Field, drives: bool) -> bool {
     drives == super::attribute(&field.attrs, BACK).is_none()
 }
 
-/// What `#[bundle("_now")]` puts behind the names of its ports; `#[bundle]` nothing.
+/// Suffix that `#[bundle("_now")]` appends to the names of its ports; empty for `#[bundle]`.
 pub fn suffix(attribute: &Attribute) -> Result<String> {
     match &attribute.meta {
         Meta::Path(_) => Ok(String::new()),

@@ -5,7 +5,7 @@ use syn::spanned::Spanned;
 use syn::visit_mut::{visit_block_mut, VisitMut};
 use syn::{Block, ImplItemFn, Stmt};
 
-/// Puts the comment lines before a statement in as `comment!`, out of the source that it stands in; what documents a part stands before its
+/// Inserts the comment lines before a statement as `comment!`, from its source; the documentation of a part precedes its
 /// first statement.
 pub fn lift(function: &mut ImplItemFn, source: &[String]) {
     let documentation: Vec<Stmt> = super::lines(&function.attrs)

@@ -1,4 +1,4 @@
-//! Parts of a kernel in another file. A macro sees only what it stands at, so the parts become a macro themselves, which writes them down
+//! Parts of a kernel in another file. A macro sees only its own item, so the parts become a macro themselves, which inserts them
 //! before the kernel.
 
 use proc_macro2::{Group, Span, TokenStream, TokenTree};
@@ -54,7 +54,7 @@ impl Parse for Both {
     }
 }
 
-/// The same text, as if all of it stood in one place: `self` out of a macro is another one than that of `update`.
+/// The same text with one origin: `self` from a macro differs from that of `update`.
 fn as_written_here(tokens: TokenStream) -> TokenStream {
     let here = |token: TokenTree| match token {
         TokenTree::Group(group) => {

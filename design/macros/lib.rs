@@ -1,7 +1,7 @@
-//! What a block of rust-hdl would otherwise say again and again; `rtl-design` hands it on, and what it writes names `rtl_design`.
+//! Macros that generate the boilerplate of a rust-hdl block; `rtl-design` re-exports them, and their output names `rtl_design`.
 //!
-//! [`macro@Block`] makes a block of its parts, so that its `new` names only those of which something is to be said. [`macro@kernel`] stands
-//! where rust-hdl has `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
+//! [`macro@Block`] makes a block from its parts, so that its `new` names only the parts with a parameter. [`macro@kernel`] replaces
+//! rust-hdl's `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
 
 mod bundle;
 mod comments;
@@ -20,9 +20,9 @@ use syn::{
     Fields, GenericArgument, GenericParam, ImplItem, ItemImpl, Lit, LitStr, Token, Type, TypePath,
 };
 
-/// The parts of a block, and what is written about them. Signals and bundles begin empty, registers with 0 or what `#[start(...)]` says,
-/// children marked `#[start]` as they are by default. What else there is (constants, children, lists, and registers marked
-/// `#[given]`) must be given, by name and all of it, to `Self::from_parts`:
+/// The parts of a block, with their documentation. Signals and bundles begin empty, registers with 0 or the value of `#[start(...)]`,
+/// children marked `#[start]` with their default. All other parts (constants, children, lists, and registers marked
+/// `#[given]`) must be passed, by name, to `Self::from_parts`:
 ///
 /// ```ignore
 /// #[derive(LogicBlock, Block)]
@@ -36,16 +36,16 @@ use syn::{
 /// Self::from_parts(TimerParts { last: Constant::new(last.into()) })
 /// ```
 ///
-/// A block that needs nothing else has `Default` instead.
+/// A block without such parts implements `Default` instead.
 ///
 /// `#[optional]` on a list of at most one signal: its name is emitted without a number.
 ///
-/// `#[bundle]` on a field whose type comes from [`macro@ports`]: its ports are emitted by their own names, or, as `#[bundle("_now")]`, with that
-/// behind them.
+/// `#[bundle]` on a field whose type comes from [`macro@ports`]: its ports are emitted with their own names, or, for `#[bundle("_now")]`, with that
+/// suffix.
 ///
-/// Where it is the only block of its file, what stands at the head of the file is its documentation, drawing included.
+/// If the block is the only one in its file, the head of the file is its documentation, including a drawing.
 ///
-/// `#[properties("x.sv")]` on the block names the file, beside the source, with what is proved about it.
+/// `#[properties("x.sv")]` on the block names the file with its properties, in the folder of the source.
 #[proc_macro_derive(Block, attributes(start, given, optional, bundle, properties))]
 pub fn block(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
@@ -95,7 +95,7 @@ pub fn block(input: TokenStream) -> TokenStream {
     quote! {
         #described
 
-        /// What is given to this block.
+        /// The given parts of this block.
         struct #parts #generics #bounds {
             #(#names: #kinds),*
         }
@@ -109,7 +109,7 @@ pub fn block(input: TokenStream) -> TokenStream {
     .into()
 }
 
-/// What is written about an enum and its variants.
+/// Documentation of an enum and its variants.
 #[proc_macro_derive(States)]
 pub fn states(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
@@ -151,11 +151,11 @@ fn described<'a>(
     docs(input, named.into_iter(), special)
 }
 
-/// What is not the same for all parts of a type.
+/// Properties that differ between the parts of a type.
 #[derive(Default)]
 struct Special<'a> {
     optional: Vec<&'a Ident>,
-    /// Fields that are bundles, their types, and what comes behind the names of their ports.
+    /// Fields that are bundles, their types, and the suffix of their ports' names.
     bundles: Vec<(&'a Ident, &'a Type, String)>,
     enums: Vec<&'a Ident>,
 }
@@ -216,7 +216,7 @@ fn lines_of_file(name: &Ident) -> Vec<Lit> {
         .collect()
 }
 
-/// The text of the file that something stands in; empty where there is none.
+/// Source text of the file of an item; empty if unavailable.
 fn source_of(place: proc_macro2::Span) -> String {
     let file = place.unwrap().local_file();
     file.and_then(|file| std::fs::read_to_string(file).ok())
@@ -325,17 +325,17 @@ pub fn ports(arguments: TokenStream, item: TokenStream) -> TokenStream {
 /// The kernel of a block: `#[hdl_gen]` of rust-hdl, in which each register that has its `d.next` assigned holds its value
 /// otherwise, has the block's clock, and, unless the kernel assigns its `reset.next`, the block's reset.
 ///
-/// It hands on what [`macro@Block`] knows.
+/// It passes on the notes of [`macro@Block`].
 ///
-/// `connect!(self.receiver <= self.settings; width, command = mode_command)` wires ports to ports: those of one name, and the first to the
-/// second where they have two.
+/// `connect!(self.receiver <= self.settings; width, command = mode_command)` connects ports to ports: ports with equal names, or the first to the
+/// second of a pair.
 ///
-/// `#[kernel(clk_i, rst_i)]` where clock and reset have other names than `clock` and `reset`. Registers in lists are the kernel's.
+/// `#[kernel(clk_i, rst_i)]` for a clock and a reset with other names than `clock` and `reset`. The kernel connects registers in lists itself.
 ///
-/// Its comments are handed on, too: they stand in the emitted text, before the same statements.
+/// Its comments are emitted before the same statements.
 ///
-/// A long kernel is said in parts: other functions beside `update` are written out where it, or one of them, calls them, as a statement or
-/// as the arm of a match. What documents a part stands in the emitted text before its first statement.
+/// A long kernel is divided into parts: other functions next to `update` are inlined where it, or one of them, calls them, as a statement or
+/// as the arm of a match. The documentation of a part is emitted before its first statement.
 ///
 /// ```ignore
 /// #[kernel]
@@ -371,7 +371,7 @@ pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
     finished(names, item)
 }
 
-/// Parts of a kernel that stands in another file; the argument is the name that the kernel asks for them by.
+/// Parts of a kernel in another file; the argument is the name by which the kernel includes them.
 ///
 /// ```ignore
 /// #[kernel_parts(waits)]
@@ -388,7 +388,7 @@ pub fn kernel_parts(arguments: TokenStream, item: TokenStream) -> TokenStream {
     elsewhere::handed_on(&name, &item).into()
 }
 
-/// A kernel behind parts of another file: what [`macro@kernel`] and [`macro@kernel_parts`] make of themselves.
+/// A kernel with parts of another file: the expansion of [`macro@kernel`] and [`macro@kernel_parts`].
 #[doc(hidden)]
 #[proc_macro]
 pub fn kernel_of_parts(both: TokenStream) -> TokenStream {
@@ -416,7 +416,7 @@ fn finished(names: Punctuated<Ident, Token![,]>, mut item: ItemImpl) -> TokenStr
         Ok(kernel) => {
             item.items.push(ImplItem::Verbatim(kernel));
             quote! {
-                // What rust-hdl takes for a comment, and the compiler for nothing.
+                // A comment for rust-hdl, and nothing for the compiler.
                 #[allow(unused_macros)]
                 macro_rules! comment {
                     ($text:literal) => {};

@@ -1,4 +1,4 @@
-//! Parts of a kernel: functions beside `update`, written out where they are called.
+//! Parts of a kernel: functions next to `update`, inlined where they are called.
 
 use proc_macro2::Ident;
 use quote::ToTokens;
@@ -59,7 +59,7 @@ struct Writer {
 }
 
 impl Writer {
-    /// What the part of this name does, if that is what is called.
+    /// Statements of the part with this name, if it is called.
     fn written(&mut self, called: &Expr) -> Option<Block> {
         let name = called_part(called).filter(|_| self.wrong.is_none())?;
         let Some(part) = (self.parts.iter_mut()).find(|part| part.function.sig.ident == *name)
@@ -100,7 +100,7 @@ impl VisitMut for Writer {
         visit_block_mut(self, block);
     }
 
-    /// What is left is no statement of a block: the arm of a match.
+    /// The rest is not a statement of a block, but the arm of a match.
     fn visit_expr_mut(&mut self, expr: &mut Expr) {
         if let Some(block) = self.written(expr) {
             *expr = Expr::Block(ExprBlock {
@@ -135,7 +135,7 @@ mod tests {
             .map_err(|wrong| wrong.to_string())
     }
 
-    /// Catches a part that is written out elsewhere, or within a block of its own where statements go on.
+    /// Catches a part that is inlined at a wrong place, or in a separate block between statements.
     #[test]
     fn parts_stand_where_they_are_called() {
         let in_parts = written(parse_quote! {
@@ -173,7 +173,7 @@ mod tests {
                 _ => {}
             }
         });
-        // A comma behind an arm says nothing, nor do spaces.
+        // A comma after an arm has no meaning, nor have spaces.
         let plain = |text: String| text.replace([',', ' '], "");
         assert_eq!(
             in_parts.map(plain),

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use syn::visit::{visit_expr_field, Visit};
 use syn::{Expr, ExprField, Ident, ItemFn, Member};
 
-/// What stands in the block for this kernel.
+/// Replaces the kernel in the block.
 pub fn whole_kernel(names: Vec<Ident>, mut item: ItemFn) -> syn::Result<TokenStream2> {
     connect::expand(&mut item.block)?;
     let usual = || ["clock", "reset"].map(|name| Ident::new(name, proc_macro2::Span::call_site()));
@@ -68,7 +68,7 @@ impl<'ast> Visit<'ast> for Assigned {
     }
 }
 
-/// What a field is of, and its name.
+/// Owner and name of a field.
 fn split(field: &ExprField) -> Option<(&Expr, &Ident)> {
     match &field.member {
         Member::Named(name) => Some((&field.base, name)),

@@ -1,4 +1,4 @@
-//! What the printers of a [`Design`](crate::elaborate::Design) share: the head of a file, names, numbers, and what stands where in a module.
+//! Shared by the printers of a [`Design`](crate::elaborate::Design): the head of a file, names, numbers, and the order in a module.
 
 mod clocked;
 mod comment;

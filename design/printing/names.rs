@@ -39,7 +39,7 @@ fn upper(name: &str) -> String {
     out
 }
 
-/// What a state is called where nothing else has that name.
+/// Name of a state, if it is free.
 pub(crate) fn variant_name(enum_type: &EnumType, variant: usize) -> String {
     let name = upper(&enum_type.variants[variant]);
     format!("{}_{name}", upper(&enum_type.name))

@@ -57,7 +57,7 @@ pub(crate) fn reads_and_targets(statements: &[Statement]) -> (BTreeSet<NetId>, B
     (reads, targets)
 }
 
-/// What statements that read nothing but what they assign make of it.
+/// Values assigned by statements that read only their own targets.
 pub(crate) fn constant_values(module: &Module, statements: &[Statement]) -> BTreeMap<NetId, u128> {
     let mut values: BTreeMap<NetId, u128> = BTreeMap::new();
     let parameters: Vec<u128> = module.parameters.iter().map(|p| p.value).collect();

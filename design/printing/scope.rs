@@ -12,19 +12,19 @@ pub(crate) struct Scope<'a> {
     /// Names of the states that are said.
     states: BTreeMap<(EnumId, usize), String>,
     parameters: BTreeSet<usize>,
-    /// What the language makes of a name that it does not take.
+    /// Replacement for a reserved name.
     emitted: fn(&str) -> String,
 }
 
 /// A state that the text says.
 pub(crate) struct State<'a> {
-    /// What it is called, and its number.
+    /// Name.
     pub name: &'a str,
     pub value: u128,
     pub width_bits: usize,
-    /// What it means, in a line.
+    /// Meaning, in one line.
     pub doc: Option<&'a String>,
-    /// Of the first one of its type: what this is.
+    /// Documentation of its type, at the first use.
     pub docs: &'a [String],
     /// The longest name of a state of its type.
     pub name_width: usize,

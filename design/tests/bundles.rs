@@ -10,7 +10,7 @@ use rust_hdl::prelude::*;
 /// A value and what is asked back.
 #[ports]
 pub struct Offer {
-    /// What is offered.
+    /// Offered value.
     pub value: Bits<7>,
     /// It is taken.
     #[back]
@@ -94,7 +94,7 @@ impl Logic for Row {
         }
         OfferIn::link(&mut self.passed_in, &mut self.last.whole);
         OfferOut::link(&mut self.passed_out, &mut self.last.half);
-        // What is assigned behind a link replaces it.
+        // An assignment after a link replaces it.
         self.passed_out.value.next = self.last.half.value.val() ^ 1;
     }
 }
@@ -127,9 +127,9 @@ fn a_port_of_a_bundle_is_told_as_any_other() {
         .map(|(_, text)| text)
         .collect();
     for line in [
-        "//   value_0    out   7  What is offered.",
+        "//   value_0    out   7  Offered value.",
         "//   ready_too  out   1  It is taken.",
-        "//   value_on   out   7  What is offered.",
+        "//   value_on   out   7  Offered value.",
         ".value_in(counters_0_value),",
     ] {
         assert!(text.contains(line), "{line} is not in\n{text}");

@@ -16,7 +16,7 @@ pub fn elaborated(mut blocks: Vec<(Box<dyn Block>, &str)>) -> Vec<Design> {
     blocks.iter_mut().map(design).collect()
 }
 
-/// Prints a design into a folder of its own; the file names.
+/// Prints a design into a separate folder; returns the file names.
 pub fn write(design: &Design, test: &str) -> (PathBuf, Vec<String>) {
     let folder = tools::folder(&format!("{test}-{}", design.top().name));
     let files = print_files(design, &Header::default());

@@ -65,7 +65,7 @@ impl Logic for Lamps {
     }
 }
 
-/// Each comment of a text with the line behind it, spaces aside.
+/// Each comment of a text with the line after it, without spaces.
 fn comments(text: &str, mark: &str) -> Vec<String> {
     let body: Vec<&str> = text
         .lines()
@@ -91,7 +91,7 @@ fn check(has_all: bool, in_verilog: &[&str], in_vhdl: &[&str]) {
     assert_eq!(comments(vhdl, "--"), in_vhdl, "{vhdl}");
 }
 
-/// Catches a comment that is lost, stands elsewhere, is there for each round of a loop, or is about what this design does not have.
+/// Catches a comment that is lost, is misplaced, is repeated for each round of a loop, or belongs to a disabled feature.
 #[test]
 fn a_comment_stands_before_what_it_is_about() {
     let in_verilog = [

@@ -147,7 +147,7 @@ impl Maker {
             low_bit,
             value: self.expr(part, 2),
         };
-        // What a process does depends on something, or it would be an assignment.
+        // A process depends on an input; otherwise it would be an assignment.
         let input = |name: &str, this: &Self| {
             let nets = &this.module.nets;
             let net = nets.iter().position(|n| n.name == name).unwrap();

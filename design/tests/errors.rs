@@ -1,4 +1,4 @@
-//! What has no exact meaning is refused, with block, field and remedy.
+//! Constructs without an exact meaning are rejected, with block, field and remedy.
 
 use rtl_design::elaborate::{elaborate, ElaborateError};
 use rtl_design::reg::Reg;

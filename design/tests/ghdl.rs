@@ -8,7 +8,7 @@ use rtl_design::vhdl::{self, emitted_name, Header};
 use std::fmt::Write;
 use std::fs;
 
-/// Of a long stimulus GHDL takes the beginning: it is slower than everything else here.
+/// GHDL runs only the beginning of a long stimulus: it is slower than all other engines.
 const CYCLES_MAX: usize = 4_000;
 
 /// Runs the printed VHDL on the stimulus under GHDL and compares every output in every cycle. Not a warning is taken after time 0, where

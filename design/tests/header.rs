@@ -1,4 +1,4 @@
-//! What the first lines of the printed text say.
+//! First lines of the printed text.
 
 use crate::zoo::ThereAndBack;
 use rtl_design::elaborate::elaborate;

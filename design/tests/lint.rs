@@ -1,4 +1,4 @@
-//! What tools make of the printed text.
+//! The printed text in external tools.
 
 use crate::clean::{elaborated, simulators_are_content, write, yosys_is_content};
 use crate::memories::{Store, Tables};

@@ -7,7 +7,7 @@ use rtl_design::kernel_engine;
 use rtl_design::memory::{Memory, Rom};
 use rust_hdl::prelude::*;
 
-/// Two memories beside each other.
+/// Two independent memories.
 #[derive(LogicBlock, Default)]
 pub struct Store {
     pub clock: Signal<In, Clock>,

@@ -16,7 +16,7 @@ pub enum E {
     Signal(char, usize),
     /// `bits::<N>(value)`, or a bool.
     Literal(u64, usize),
-    /// A bare literal; only as an operand beside a typed one.
+    /// A bare literal; only as an operand next to a typed one.
     Raw(u64),
     Binary(Op, Box<E>, Box<E>),
     /// One bit from two operands of another width.

@@ -23,7 +23,7 @@ pub struct Stimulus {
     pub middle: Vec<Vec<u128>>,
 }
 
-/// What the outputs were, cycle by cycle.
+/// The outputs, cycle by cycle.
 pub struct Recording {
     pub outputs: Vec<Port>,
     pub cycles: Vec<Vec<u128>>,

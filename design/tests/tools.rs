@@ -147,8 +147,8 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// An empty folder for the files of one test. Processes at the same time have folders of their own; their files stay for whoever looks for
-/// a fault, and the next process takes their place.
+/// An empty folder for the files of one test. Concurrent processes have separate folders; the files remain for
+/// debugging, and the next process replaces them.
 pub fn folder(name: &str) -> PathBuf {
     static HELD: OnceLock<(fs::File, PathBuf)> = OnceLock::new();
     let (_, home) = HELD.get_or_init(|| {

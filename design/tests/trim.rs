@@ -176,7 +176,7 @@ fn without_reset_and_start_value_nothing_is_known() {
     assert_eq!(registers(first), ["total", "was_double"]);
 }
 
-/// What is proved keeps its registers; of what never moves it sees the value.
+/// Properties keep their registers; they see the value of a register that never changes.
 #[test]
 fn properties_keep_what_they_speak_of() {
     let mut design = elaborate(&Pair::new(true, false), "pair").unwrap();

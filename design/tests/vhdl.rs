@@ -1,4 +1,4 @@
-//! What is of VHDL alone: names that are words there, ports that are read, files in the order of compilers.
+//! VHDL only: reserved names, ports that are read, order of files for compilers.
 
 use crate::zoo::check;
 use rtl_design::elaborate::elaborate;
@@ -7,7 +7,7 @@ use rtl_design::reg::Reg;
 use rtl_design::vhdl::{package_name, print, print_files, Header};
 use rust_hdl::prelude::*;
 
-/// Words of VHDL in every place, and names that are one in VHDL, which tells no capital letters.
+/// Reserved words of VHDL in every place, and names that differ only in case, which VHDL ignores.
 #[derive(LogicBlock, Default)]
 struct Words {
     pub clock: Signal<In, Clock>,

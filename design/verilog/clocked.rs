@@ -128,7 +128,7 @@ impl ModulePrinter<'_> {
         )
     }
 
-    /// Declares a counter and fills the words that have no start value of their own.
+    /// Declares a counter and fills the words without a start value.
     fn zero_words(&mut self, memory: &Memory) -> (String, String) {
         let first = memory.start.len();
         if first == memory.words {

@@ -1,7 +1,7 @@
 //! Verilog-2005 from a [`Design`]: one module per block type, meant to be read.
 //!
 //! Every printed operator has operands of the width of its result, so Verilog's rules for the width of an expression
-//! never change a value. What Verilog cannot say in one expression (bits of an expression) gets a net of its own.
+//! never change a value. Constructs that Verilog cannot express at once (bits of an expression) get a separate net.
 
 mod clocked;
 mod module;

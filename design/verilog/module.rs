@@ -176,7 +176,7 @@ impl<'a> ModulePrinter<'a> {
         out
     }
 
-    /// What is driven but never read, as Verilog expressions.
+    /// Driven nets that are never read, as Verilog expressions.
     fn unused(&self) -> Vec<String> {
         let read = self.clocked.read_bits(self.module);
         let outputs: BTreeSet<NetId> = self

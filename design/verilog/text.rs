@@ -30,7 +30,7 @@ pub(super) fn comment(lines: &[String], pad: &str) -> String {
     crate::printing::comment(MARK, lines, pad)
 }
 
-/// What is proved about a module: compilers other than provers never see it.
+/// The properties of a module: only provers see them.
 pub(super) fn properties(text: &str) -> String {
     if text.is_empty() {
         return String::new();
@@ -45,7 +45,7 @@ pub(super) fn properties(text: &str) -> String {
         line => format!("{INDENT}{}\n", labelled(line)),
     };
     let lines: String = text.lines().map(line).collect();
-    // What does not speak of any state holds from the start values.
+    // Lines that do not apply to any state hold from the start values.
     let lines = match text.contains(ANY_STATE) {
         true => lines,
         false => format!("`ifndef {ANY_STATE}\n{lines}`endif\n"),

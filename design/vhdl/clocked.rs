@@ -71,7 +71,7 @@ impl ModulePrinter<'_> {
         out
     }
 
-    /// What the memories declare, and their processes.
+    /// Declarations of the memories, and their processes.
     pub fn memories(&mut self) -> (String, String) {
         let (mut declarations, mut processes) = (String::new(), String::new());
         for memory in &self.module.memories {
@@ -120,7 +120,7 @@ impl ModulePrinter<'_> {
     }
 }
 
-/// The start values, as many in a line as fit; the words that have none of their own are 0.
+/// The start values, as many in a line as fit; other words are 0.
 fn start_words(memory: &Memory) -> String {
     let pad = INDENT.repeat(2);
     let mut items: Vec<String> = (memory.start.iter().enumerate())

@@ -1,10 +1,10 @@
 //! VHDL from a [`Design`]: one entity per block type, meant to be read. The text is VHDL-93 and VHDL-2008 at once.
 //!
 //! One bit is `std_logic`, more are `unsigned`; ports of the top are `std_logic_vector`, as everyone expects them at an entity that is
-//! instantiated. Every operator has operands of the width of its result. What VHDL-93 has no words for (bits of an expression,
-//! a comparison as a bit) are functions of a small package that goes along.
+//! instantiated. Every operator has operands of the width of its result. A small package has functions for constructs missing in VHDL-93 (bits of an
+//! expression, a comparison as a bit).
 //!
-//! Named constants are constants here, too, no generics: a module is of one set of values, and its widths may follow from them.
+//! Named constants are constants here, too, not generics: a module has one set of values, and its widths may follow from them.
 
 mod clocked;
 mod module;

@@ -11,7 +11,7 @@ use crate::elaborate::{Design, Direction, ExprKind, Module, NetId};
 use crate::printing::{reads_and_targets, Clocked, Scope, INDENT};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the architecture of a module is called.
+/// Name of the architecture of a module.
 const ARCHITECTURE: &str = "rtl";
 
 /// The text of a module.
@@ -112,7 +112,7 @@ impl<'a> ModulePrinter<'a> {
             && self.module.ports.iter().any(is_input)
     }
 
-    /// What stands for a net in the text.
+    /// Text for a net.
     pub fn reference(&self, net: NetId) -> String {
         let name = self.variables.get(&net).or(self.inner.get(&net));
         name.unwrap_or(&self.module.nets[net].name).clone()
@@ -170,7 +170,7 @@ impl<'a> ModulePrinter<'a> {
         )
     }
 
-    /// The ports that a signal of this module stands for.
+    /// The ports driven by a signal of this module.
     fn outputs(&self) -> String {
         let line = |(net, signal): (&NetId, &String)| {
             let net = &self.module.nets[*net];

@@ -13,7 +13,7 @@ const KEYWORDS: &str = "abs access after alias all and architecture array assert
     sll sra srl strong subtype then to transport type unaffected units until use variable vmode vprop vunit wait when while with xnor \
     xor work ieee std rtl boolean integer natural true false";
 
-/// The name that a net, port or instance has in the emitted text. VHDL has no underscores at the ends or side by side, and a word of its own
+/// The emitted name of a net, port or instance. VHDL allows no leading, trailing or double underscores; a reserved word
 /// gets `_value` appended.
 pub fn emitted_name(name: &str) -> String {
     let parts: Vec<&str> = name.split('_').filter(|part| !part.is_empty()).collect();

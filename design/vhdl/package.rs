@@ -33,7 +33,7 @@ pub(super) const FUNCTIONS: [&str; 16] = [
 /// Its text.
 pub(super) fn text(design: &Design) -> String {
     let name = package_name(design);
-    let docs = ["What VHDL-93 has no words for.".to_string()];
+    let docs = ["Functions for constructs that VHDL-93 lacks.".to_string()];
     let head = comment(&docs, "");
     let text = TEXT.replace("NAME", &name);
     format!(

@@ -35,7 +35,7 @@ pub(super) fn number(value: u128) -> Option<String> {
     (is_count(value) && value <= INTEGER_MAX).then(|| value.to_string())
 }
 
-/// What the type of a literal follows from.
+/// Source of a literal's type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Context {
     /// The signal that is assigned.
@@ -78,7 +78,7 @@ pub(super) fn mask_literal(value: u128, width_bits: usize, context: Context) -> 
     }
 }
 
-/// A pattern of which each bit means something of its own: a string, or strings side by side.
+/// A pattern in which each bit has a separate meaning: a string, or concatenated strings.
 pub(super) fn bits(value: u128, width_bits: usize) -> String {
     let above = width_bits % 4;
     match width_bits {
@@ -112,7 +112,7 @@ fn typed(text: String, context: Context) -> String {
     }
 }
 
-/// Items of a list in lines, as many in each as fit; commas stand between them.
+/// Items of a list in lines, as many in each as fit, separated by commas.
 pub(super) fn wrapped(items: &[String], longest: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for (index, item) in items.iter().enumerate() {

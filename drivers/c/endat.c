@@ -1,16 +1,16 @@
 /**
  * @file endat.c
- * The card itself: who it is, its words, its results.
+ * The card: identity, words, results.
  */
 #include "endat.h"
 #include "endat_internal.h"
 #include <stddef.h>
 
-/** Looks in a microsecond, where nobody tells the time: no access is faster, so that no limit comes too soon. */
+/** Polls per microsecond without a clock: more than any bus can do, so that no limit comes too early. */
 #define LOOKS_PER_US 10u
-/** How often a moment is tried word by word before the results are held. */
+/** Number of tries to read one instant word by word before the results are held. */
 #define MOMENT_TRIES 3u
-/** Pause between two looks at results. */
+/** Pause between two polls of results. */
 #define RESULT_PAUSE_US 5u
 /** CRC5 of EnDat: generator, first and last value. */
 #define CRC5_POLYNOMIAL 0x0Bu
@@ -94,25 +94,25 @@ const char *endat_error_text(endat_error error)
 {
     static const char *const texts[ENDAT_ERRORS] = {
         "done",
-        "there is nothing",
-        "argument outside of what the card takes: see the register map, and endat_card for what this card has",
-        "the bus refused the access or did not answer: check base address, clock and reset of the card",
-        "check sum wrong, also when tried again: check the lines, lower the serial clock",
+        "nothing available",
+        "argument outside the supported range: see the register map, and endat_card for the parts of this card",
+        "the bus rejected the access or did not answer: check base address, clock and reset of the card",
+        "check sum wrong in all tries: check the lines, lower the serial clock",
         "no card answers: check base address, byte order and, on SPI, the mode",
-        "the card has another major version of the register map: take the driver that came with the card",
-        "the card was made from another configuration: load the bitstream that belongs to this program",
-        "the card does not have this part: emit one that has it",
-        "the channel speaks another protocol, which does not have this: endat_protocol() tells which",
-        "not ended in time: is a trigger enabled, is the encoder plugged in?",
+        "the card has another major version of the register map: use the driver that was generated with the card",
+        "the card has another configuration: load the bitstream that belongs to this program",
+        "the card does not have this part: generate a card with it",
+        "the channel has another protocol, which does not support this: see endat_protocol()",
+        "timeout: check that a trigger is enabled and the encoder is plugged in",
         "still under way: ask again",
-        "the setting reads back as another one: is another master writing, is the link disturbed?",
-        "no encoder: check plug, supply and both lines of DATA; the card goes on by itself",
-        "the encoder could not be initialised: endat_failed_step() tells where; look at the cause of the last result",
-        "the encoder did not fulfil the request: endat_refusal_text() tells why",
+        "the setting reads back with another value: check for a second master and a disturbed link",
+        "no encoder: check plug, supply and both lines of DATA; the card recovers automatically",
+        "the encoder could not be initialised: endat_failed_step() returns the step; check the cause of the last result",
+        "the encoder rejected the request: endat_refusal_text() has the reason",
         "the trigger source \"register\" is not enabled: endat_set_triggers()",
-        "a set of the stream was damaged: the link is disturbed, or another reader takes from it",
-        "the exchange with the T-format encoder failed: endat_cause_text() of the reply's cause tells why",
-        "the card or its service has begun anew, or another master has asked: ask again, write alarms and additional data again",
+        "a set of the stream was damaged: the link is disturbed, or another program reads it",
+        "the exchange with the T-format encoder failed: endat_cause_text() of the reply's cause has the reason",
+        "the card or its service has restarted, or another master has sent a request: send it again, write alarms and additional data again",
     };
     const uint32_t number = (uint32_t)error;
 
@@ -210,13 +210,13 @@ endat_error endat_try_link(const endat_card *card)
     return error;
 }
 
-/** Words of a result that this card has. */
+/** Number of words in a result of this card. */
 static uint32_t result_words(const endat_card *card)
 {
     return endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_REQUESTS) ? ENDAT_MAP_RESULT_WORDS_WITH_INFOS : ENDAT_MAP_RESULT_WORDS;
 }
 
-/** Reads the words of all results, rising. */
+/** Reads the words of all results in rising order. */
 static endat_error look(const endat_card *card, uint32_t words[ENDAT_BURST_WORDS])
 {
     const uint32_t each = result_words(card);
@@ -238,7 +238,7 @@ static endat_error look(const endat_card *card, uint32_t words[ENDAT_BURST_WORDS
     return error;
 }
 
-/** Whether no result has come since these words were read: then all of them are of one moment. */
+/** True if no result has come since these words were read: all of them belong to one instant. */
 static endat_error is_same(const endat_card *card, const uint32_t words[ENDAT_BURST_WORDS], bool *same)
 {
     endat_error error = ENDAT_OK;
@@ -253,7 +253,7 @@ static endat_error is_same(const endat_card *card, const uint32_t words[ENDAT_BU
     return error;
 }
 
-/** The same while the card holds its results. */
+/** Reads the words while the card holds its results. */
 static endat_error look_held(const endat_card *card, uint32_t words[ENDAT_BURST_WORDS])
 {
     uint32_t word = 0u;
@@ -265,7 +265,7 @@ static endat_error look_held(const endat_card *card, uint32_t words[ENDAT_BURST_
         if (error == ENDAT_OK) {
             error = look(card, words);
         }
-        /* After every error, too: results that stand still for ever are worse. */
+        /* Release after every error, too: frozen results would be worse. */
         endat_error let_go = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, word);
         if (let_go != ENDAT_OK) {
             let_go = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, word);
@@ -300,7 +300,7 @@ static uint32_t crc5_step(uint32_t crc, uint32_t bit)
     return ((crc << 1u) & CRC5_ONES) ^ ((feedback != 0u) ? CRC5_POLYNOMIAL : 0u);
 }
 
-/** Whether a position fits the CRC that came with it, over F1 = 0, F2 = 1 if there was one, and the position, LSB first. */
+/** True if a position matches the CRC received with it, over F1 = 0, F2 = 1 if it was sent, and the position, LSB first. */
 static bool fits_crc(uint64_t position, uint32_t high)
 {
     const uint32_t width = ENDAT_MAP_GET(ENDAT_MAP_RESULT_POSITION_HIGH_WIDTH, high);
@@ -334,7 +334,7 @@ static endat_info info_of(uint32_t word)
     return info;
 }
 
-/** Place of a word in a result. */
+/** Index of a word in a result. */
 #define AT(name) (ENDAT_MAP_RESULT_##name##_WORD(0u) - ENDAT_MAP_RESULT_BASE_WORD)
 
 static void take_apart(const uint32_t *words, bool has_infos, uint32_t protocol, endat_result *result)
@@ -412,7 +412,7 @@ endat_error endat_measure(const endat_card *card, endat_moment *moment, uint32_t
 
     for (n = 0u; (error == ENDAT_OK) && (n < moment->channels); n++) {
         before[n] = moment->channel[n].sequence;
-        /* The next result is that of an earlier trigger. */
+        /* The next result belongs to an earlier trigger. */
         under_way[n] = moment->channel[n].stale ? 1u : 0u;
     }
     if (error == ENDAT_OK) {
@@ -423,14 +423,14 @@ endat_error endat_measure(const endat_card *card, endat_moment *moment, uint32_t
         bool any_new = false;
         bool any_stale = false;
 
-        /* The last look comes behind the last pause. */
+        /* The last poll comes after the last pause. */
         in_time = endat_wait_more(&wait, RESULT_PAUSE_US);
         error = endat_read_moment(card, moment);
         for (n = 0u; (error == ENDAT_OK) && (n < moment->channels); n++) {
             const uint16_t results = (uint16_t)(moment->channel[n].sequence - before[n]);
 
             any_new = any_new || (results != 0u);
-            /* Triggers of other sources go on: what is later than this call began is not stale for it. */
+            /* Other trigger sources continue: a result after the start of this call is not stale for it. */
             if (results > under_way[n]) {
                 moment->channel[n].stale = false;
             }

@@ -1,6 +1,6 @@
 /**
  * @file endat_internal.h
- * What the files of the driver share; not for programs.
+ * Shared by the files of the driver; not for programs.
  */
 #ifndef ENDAT_INTERNAL_H
 #define ENDAT_INTERNAL_H
@@ -9,57 +9,57 @@
 
 /** A wait with a limit. */
 typedef struct {
-    const endat_link *link; /**< Its clock. */
-    uint32_t started_us;    /**< When it began. */
-    uint32_t passed_us;     /**< Added up, without a clock. */
-    uint32_t looks;         /**< Counted, without a clock and without waits. */
-    uint32_t limit_us;      /**< When it is over. */
+    const endat_link *link; /**< Link, for its clock. */
+    uint32_t started_us;    /**< Start time. */
+    uint32_t passed_us;     /**< Sum of the pauses, without a clock. */
+    uint32_t looks;         /**< Number of polls, without a clock and without waits. */
+    uint32_t limit_us;      /**< Limit. */
 } endat_wait;
 
 void endat_wait_begin(endat_wait *wait, const endat_card *card, uint32_t limit_us);
 
-/** Pauses; false if the limit has passed. */
+/** Pauses; false after the limit. */
 bool endat_wait_more(endat_wait *wait, uint32_t pause_us);
 
-/** Milliseconds as microseconds, as far as they fit. */
+/** Milliseconds to microseconds, saturating. */
 uint32_t endat_ms(uint32_t ms);
 
-/** What a channel speaks, ENDAT_PROTOCOL_..., as the word card.protocols says. */
+/** Protocol of a channel, ENDAT_PROTOCOL_..., from the word card.protocols. */
 uint32_t endat_protocol_of(uint32_t word, uint32_t channel);
 
 /** The cause, ENDAT_CAUSE_..., of a code of a channel's protocol. */
 uint8_t endat_cause_of(uint32_t code, uint32_t protocol);
 
-/** Whether there is this EnDat channel. */
+/** Checks for an EnDat channel. */
 endat_error endat_needs_endat(const endat_card *card, uint32_t channel);
 
-/** Whether there is this EnDat channel, and the part requests. */
+/** Checks for an EnDat channel and the part requests. */
 endat_error endat_needs_service(const endat_card *card, uint32_t channel);
 
-/** Whether there is this T-format channel. */
+/** Checks for a T-format channel. */
 endat_error endat_needs_t_format(const endat_card *card, uint32_t channel);
 
-/** Pause between two looks at a request, in microseconds. */
+/** Pause between two polls of a request, in microseconds. */
 #define ENDAT_REQUEST_PAUSE_US 50u
 
 /** A word with another number in a field. */
 #define ENDAT_WITH(word, field, value) (((word) & ~(uint32_t)field##_MASK) | ENDAT_MAP_PUT(field, value))
-/** Whether a number fits its field. */
+/** True if a number fits its field. */
 #define ENDAT_FITS(field, value) (ENDAT_MAP_GET(field, ENDAT_MAP_PUT(field, value)) == (value))
 
-/** Words of a channel's settings, in their order: frame, timing, limits. */
+/** Words of a channel's settings: frame, timing, limits. */
 #define ENDAT_SETTINGS_WORDS 3u
-/** Reads them. */
+/** Reads these words. */
 endat_error endat_read_settings_words(const endat_card *card, uint32_t channel, uint32_t *words);
-/** Writes them while no source triggers, and reads them back. */
+/** Writes them while all trigger sources are disabled, and reads them back. */
 endat_error endat_write_settings_words(const endat_card *card, uint32_t channel, const uint32_t *words);
 
-/** Something to be done with a channel. */
+/** Action on a channel. */
 typedef endat_error (*endat_action)(const endat_card *card, uint32_t channel, const void *what);
-/** Does something while no source triggers. */
+/** Executes an action while all trigger sources are disabled. */
 endat_error endat_without_triggers(const endat_card *card, uint32_t channel, endat_action act, const void *what);
 
-/** CRC-16/CCITT-FALSE, which begins with ENDAT_CRC16_START. */
+/** CRC-16/CCITT-FALSE; start value ENDAT_CRC16_START. */
 #define ENDAT_CRC16_START 0xFFFFu
 uint32_t endat_crc16(uint32_t crc, const uint8_t *bytes, uint32_t count);
 

@@ -13,7 +13,7 @@
 #define BUSY 0x8000u
 #define NO_READ 0x4000u
 #define ADDRESS_BITS 0x07FFu
-/** Looks at the window until it must be free: the longest access takes some hundred system clocks, a look several. */
+/** Polls of the window until it must be free: the longest access takes some hundred system clocks, a poll several. */
 #define LOOKS 1000u
 
 static endat_error wait_for_window(endat_parallel *parallel)
@@ -26,7 +26,7 @@ static endat_error wait_for_window(endat_parallel *parallel)
     return (looks > 0u) ? ENDAT_OK : ENDAT_ERROR_LINK;
 }
 
-/* Each write of the window sets the channel of registers 0 to 4, too, which this does not use. */
+/* Each write of the window also sets the channel of registers 0 to 4, which the driver does not use. */
 static endat_error read_word(void *context, uint32_t word_address, uint32_t *value)
 {
     endat_parallel *const parallel = (endat_parallel *)context;

@@ -5,20 +5,20 @@
 #include "endat.h"
 #include "endat_internal.h"
 
-/** Pause between two looks at an initialisation. */
+/** Pause between two polls of an initialisation. */
 #define STATE_PAUSE_US 500u
-/** No trigger is taken for so long behind an aborted frame. */
+/** A channel ignores triggers for this time after an aborted frame. */
 #define ABORT_PAUSE_US 30000u
-/** From so many milliseconds on the microseconds of a duration have wrapped, or may have. */
+/** From this number of milliseconds on the microseconds of a duration may have wrapped. */
 #define WRAPS_MS 60u
-/** Requests are counted up to it, and then from 0 on. */
+/** Largest count of requests before it wraps to 0. */
 #define FINISHED_MAX (ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED_MASK >> ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED_SHIFT)
 
 /** Largest MRS code, address or port, and largest data of a command. */
 #define ADDRESS_MAX (ENDAT_MAP_SERVICE_REQUEST_ADDRESS_MASK >> ENDAT_MAP_SERVICE_REQUEST_ADDRESS_SHIFT)
 #define DATA_MAX (ENDAT_MAP_SERVICE_REQUEST_DATA_MASK >> ENDAT_MAP_SERVICE_REQUEST_DATA_SHIFT)
 
-/* The words of a list follow each other: if not, this does not compile. */
+/* Compilation fails unless the words of a list are consecutive. */
 typedef char endat_list_follows[((ENDAT_MAP_SERVICE_LIST_7_WORD(0u) - ENDAT_MAP_SERVICE_LIST_0_WORD(0u)) == 7u) ? 1 : -1];
 typedef char endat_slots_follow[((ENDAT_MAP_SERVICE_SLOT_7_WORD(0u) - ENDAT_MAP_SERVICE_SLOT_0_WORD(0u)) == 7u) ? 1 : -1];
 
@@ -57,7 +57,7 @@ endat_error endat_failed_step(const endat_card *card, uint32_t channel, uint32_t
     return error;
 }
 
-/** What the last result says of the plug, where there is no service. */
+/** Plug state from the last result, on cards without service. */
 static endat_error status_of_result(const endat_card *card, uint32_t channel)
 {
     uint32_t status = 0u;
@@ -94,7 +94,7 @@ endat_error endat_status(const endat_card *card, uint32_t channel)
     } else if (!state.initialised && endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INITIALISE)) {
         error = endat_failed_step(card, channel, &step);
         if (error == ENDAT_OK) {
-            /* None failed yet: it is about to begin. */
+            /* No step has failed yet: the initialisation is about to begin. */
             error = (step != 0u) ? ENDAT_ERROR_INITIALISATION : ENDAT_ERROR_BUSY;
         }
     } else {
@@ -116,7 +116,7 @@ endat_error endat_wait_ready(const endat_card *card, uint32_t channel, uint32_t 
         was_away = was_away || (error == ENDAT_ERROR_UNPLUGGED);
     }
     if ((error == ENDAT_OK) && was_away && !endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INITIALISE)) {
-        /* An initialisation takes longer than the pause; without one nothing tells that triggers are lost. */
+        /* An initialisation takes longer than the pause; without one there is no flag for lost triggers. */
         endat_wait_begin(&wait, card, ABORT_PAUSE_US);
         while (endat_wait_more(&wait, STATE_PAUSE_US)) {
         }
@@ -124,7 +124,7 @@ endat_error endat_wait_ready(const endat_card *card, uint32_t channel, uint32_t 
     return (error == ENDAT_ERROR_BUSY) ? ENDAT_ERROR_TIMEOUT : error;
 }
 
-/** Writes the word control, whole: what was asked for before must not be done again. */
+/** Writes the whole word control, so that earlier actions are not repeated. */
 static endat_error control(const endat_card *card, uint32_t channel, uint32_t word)
 {
     endat_error error = endat_needs_service(card, channel);
@@ -176,7 +176,7 @@ endat_error endat_read_plate(const endat_card *card, uint32_t word_address, uint
     return error;
 }
 
-/** Adds a letter to a text, if it can be printed. */
+/** Appends a character to a text, if it is printable. */
 static uint32_t add_letter(char *text, uint32_t length, uint32_t letter)
 {
     uint32_t longer = length;
@@ -188,7 +188,7 @@ static uint32_t add_letter(char *text, uint32_t length, uint32_t letter)
     return longer;
 }
 
-/** Adds a number to a text. */
+/** Appends a number to a text. */
 static uint32_t add_number(char *text, uint32_t length, uint32_t number)
 {
     uint32_t unit = 1000000000u;
@@ -205,7 +205,7 @@ static uint32_t add_number(char *text, uint32_t length, uint32_t number)
     return longer;
 }
 
-/** A word of the name plate of a channel, unless there has been an error. */
+/** A word of the name plate of a channel, unless an error has occurred. */
 static uint32_t plate_word(const endat_card *card, uint32_t channel, uint32_t word_address, endat_error *error)
 {
     uint16_t value = 0u;
@@ -328,7 +328,7 @@ endat_error endat_request_poll(const endat_card *card, const endat_request *requ
     if (error != ENDAT_OK) {
         return error;
     }
-    /* "busy" may be 0 still in the first reads: only the number tells. */
+    /* "busy" may still be 0 in the first reads; only the number is reliable. */
     ended = (ENDAT_MAP_GET(ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED, state) - request->finished) & FINISHED_MAX;
     if ((ended == 0u) || ((ended == 1u) && ((state & ENDAT_MAP_SERVICE_REQUEST_STATE_BUSY_MASK) != 0u))) {
         return ENDAT_ERROR_BUSY;
@@ -384,7 +384,7 @@ endat_error endat_send(const endat_card *card, uint32_t channel, uint32_t comman
     if (error == ENDAT_ERROR_BUSY) {
         error = ENDAT_ERROR_TIMEOUT;
         if (is_sent) {
-            /* What it gives is of no use: the time-out is told in any case. */
+            /* Ignore its result: the call returns the time-out in any case. */
             (void)endat_request_cancel(card, channel);
         }
     }
@@ -403,7 +403,7 @@ static endat_error in_memory(const endat_card *card, uint32_t channel, uint32_t 
 {
     endat_error error = ENDAT_OK;
 
-    /* A wrong argument is refused with the command, and selects nothing before. */
+    /* A wrong argument is rejected before anything is selected. */
     if ((address <= ADDRESS_MAX) && (data <= DATA_MAX)) {
         error = endat_select_memory(card, channel, mrs, 0u, limit_ms, answer);
     }
@@ -428,7 +428,7 @@ endat_error endat_select_infos(const endat_card *card, uint32_t channel, const u
     uint32_t n;
 
     for (n = 0u; (n < count) && (count <= ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MAX); n++) {
-        /* Bits 7..5 are those that select additional data, with bits 3..0 = 15 none. */
+        /* Bits 7..5 select additional data; bits 3..0 = 15 deselect them. */
         if ((error == ENDAT_OK) && (((mrs[n] & 0xE0u) != 0x40u) || ((mrs[n] & 0x0Fu) == 0x0Fu))) {
             error = ENDAT_ERROR_ARGUMENT;
         }
@@ -436,7 +436,7 @@ endat_error endat_select_infos(const endat_card *card, uint32_t channel, const u
     if ((error == ENDAT_OK) && (count > ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MAX)) {
         error = ENDAT_ERROR_ARGUMENT;
     }
-    /* No code is selected while the list is half written. */
+    /* The list is inactive while it is being written. */
     if (error == ENDAT_OK) {
         error = endat_write_checked(card, ENDAT_MAP_SERVICE_LIST_LENGTH_WORD(channel), 0u);
     }

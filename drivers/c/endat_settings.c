@@ -1,14 +1,14 @@
 /**
  * @file endat_settings.c
- * Settings of channels, triggers and interrupts; what positions are.
+ * Settings of channels, triggers and interrupts; kind of positions.
  */
 #include "endat.h"
 #include "endat_internal.h"
 
-/** Fewest system clocks in an EnDat clock, where DATA is not sampled on both edges. */
+/** Fewest system clocks in an EnDat clock, if DATA is not sampled on both edges. */
 #define SINGLE_EDGE_PERIOD_MIN 4u
 
-/* The words of a channel follow each other: if not, this does not compile. */
+/* Compilation fails unless the words of a channel are consecutive. */
 typedef char endat_settings_follow[((ENDAT_MAP_CONFIG_LIMITS_WORD(0u) - ENDAT_MAP_CONFIG_FRAME_WORD(0u)) == (ENDAT_SETTINGS_WORDS - 1u))
                                        ? 1
                                        : -1];
@@ -32,7 +32,7 @@ endat_error endat_read_settings_words(const endat_card *card, uint32_t channel, 
     return error;
 }
 
-/** Writes the sources of before, also where one access fails: all wait for them. */
+/** Restores the trigger sources, also after a failed access: all channels depend on them. */
 static endat_error give_back(const endat_card *card, uint32_t sources)
 {
     endat_error error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, sources);
@@ -74,7 +74,7 @@ static endat_error write_words(const endat_card *card, uint32_t channel, const v
 
 endat_error endat_write_settings_words(const endat_card *card, uint32_t channel, const uint32_t *words)
 {
-    /* A frame between two writes would run with half of the settings. */
+    /* A frame between two writes would use half of the settings. */
     return endat_without_triggers(card, channel, write_words, words);
 }
 
@@ -154,7 +154,7 @@ endat_error endat_set_triggers(const endat_card *card, uint32_t sources, uint32_
         error = endat_read_word(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, &word);
     }
     if ((error == ENDAT_OK) && (period_cycles != 0u)) {
-        /* The period is written while the timer stands. */
+        /* The period is written while the timer is stopped. */
         error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD,
                                     word & ~(uint32_t)ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_TIMER_MASK);
         if (error == ENDAT_OK) {
@@ -200,7 +200,7 @@ endat_error endat_take_interrupts(const endat_card *card, uint32_t *events)
     if (endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INTERRUPT)) {
         error = endat_read_word(card, ENDAT_MAP_INTERRUPT_STATUS_WORD, events);
     }
-    /* Only what has been seen: an event of this moment stays. */
+    /* Clear only the events that were read; new ones remain. */
     if ((error == ENDAT_OK) && (*events != 0u)) {
         error = endat_write_word(card, ENDAT_MAP_INTERRUPT_CLEAR_WORD, *events);
     }
@@ -216,7 +216,7 @@ static uint64_t lowest(uint32_t bits)
 #define T_FORMAT_TURNS_AT 24u
 #define POSITION_BITS 48u
 
-/** Whether the protocol's positions have room for it. */
+/** True if the range fits the positions of the protocol. */
 static bool is_range(const endat_range *range, bool is_t_format)
 {
     const uint32_t most = is_t_format ? T_FORMAT_TURNS_AT : POSITION_BITS;
@@ -238,7 +238,7 @@ endat_error endat_read_range(const endat_card *card, uint32_t channel, endat_ran
     const uint32_t turns = ENDAT_MAP_GET(ENDAT_MAP_CONFIG_TIMING_MULTI_TURN_BITS, words[1]);
     const uint32_t asked = ENDAT_MAP_GET(ENDAT_MAP_CONFIG_TIMING_REQUEST_ID, words[1]);
     const uint32_t single = (bits > turns) ? (bits - turns) : 0u;
-    /* Other requests of T-format bring no turns: those in a position are as old as the last that brought some. */
+    /* Other T-format requests bring no turns: the turns in a position are from the last reply with turns. */
     const bool has_turns = !is_t_format || (asked == ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING) ||
                            (asked == ENDAT_MAP_T_FORMAT_SEND_ID_MULTI_TURN);
 

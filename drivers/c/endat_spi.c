@@ -8,14 +8,14 @@
 
 #define COMMAND_WRITE 2u
 #define COMMAND_READ 3u
-/** First byte of an answer: a card is there, and the last write was good, or was not. */
+/** First byte of an answer: the last write was good, or was not. */
 #define STATUS_GOOD 0xA0u
 #define STATUS_BAD_WRITE 0xA2u
 /** Bytes of command, address and number. */
 #define HEAD_BYTES 4u
-/** Where the words of an answer begin. */
+/** Offset of the first word in an answer. */
 #define ANSWER_AT 5u
-/** What makes a check sum wrong, farther from the right one than any few wrong bits. */
+/** Inverts a check sum, so that it differs from the right one in more bits than a disturbance. */
 #define ALL_WRONG 0xFFFFu
 
 static void put_head(endat_spi *spi, uint8_t command, uint32_t word_address, uint32_t count)
@@ -78,7 +78,7 @@ static endat_error read_word(void *context, uint32_t word_address, uint32_t *val
     return read_burst(context, word_address, 1u, value);
 }
 
-/** How the last write went, from the head of a read that is good itself; asked twice, as the head has no check sum. */
+/** Result of the last write, from the head of a good read; read twice, because the head has no check sum. */
 static endat_error last_write(endat_spi *spi)
 {
     uint32_t status[2] = {0u, 1u};
@@ -99,12 +99,12 @@ static endat_error last_write(endat_spi *spi)
     } else if ((error == ENDAT_OK) && ((status[0] != STATUS_GOOD) || (status[1] != STATUS_GOOD))) {
         error = ENDAT_ERROR_LINK;
     } else {
-        /* It was good, or nobody knows. */
+        /* It was good, or is unknown. */
     }
     return error;
 }
 
-/** One write of a word, with its check sum or with a wrong one. What the card says of the write before is in spi->received[0]. */
+/** One write of a word, with its check sum or with a wrong one. spi->received[0] has the result of the previous write. */
 static endat_error write_once(endat_spi *spi, uint32_t word_address, uint32_t value, uint32_t wrong)
 {
     uint32_t crc;
@@ -121,8 +121,8 @@ static endat_error write_once(endat_spi *spi, uint32_t word_address, uint32_t va
 }
 
 /*
- * A write whose command byte was disturbed is none, and the card has nothing to say of it. So one with a wrong check sum goes first,
- * which writes nothing: the card says "bad" until the good one has arrived.
+ * The card does not detect a write whose command byte was disturbed. So a frame with a wrong check sum goes first,
+ * which writes nothing: the card reports "bad" until the good write has arrived.
  */
 static endat_error write_word(void *context, uint32_t word_address, uint32_t value)
 {

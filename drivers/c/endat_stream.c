@@ -1,6 +1,6 @@
 /**
  * @file endat_stream.c
- * The stream of sample sets, taken word by word out of the card's buffer: over any bus.
+ * The stream of sample sets, read word by word from the card's buffer: over any bus.
  */
 #include "endat.h"
 #include "endat_internal.h"
@@ -16,7 +16,7 @@
 #define TYPE_PLAIN 1u
 #define TYPE_INFOS 2u
 #define TYPE_RUN 3u
-/** Bits of a sample's status: those of the upper half of result.status, and two that stand in free places. */
+/** Bits of a sample's status: those of the upper half of result.status, and two in unused places. */
 #define STATUS_SHIFT 16u
 #define TAKEN 0x0020u
 #define MISSING 0x8000u
@@ -68,7 +68,7 @@ static uint64_t number(const uint8_t *bytes, uint32_t count)
     return value;
 }
 
-/** COBS, in place; bytes that come out of it, 0 if it is damaged. */
+/** Decodes COBS in place; returns the number of bytes, 0 if it is damaged. */
 static uint32_t decode(uint8_t *bytes, uint32_t count)
 {
     uint32_t from = 0u;
@@ -136,7 +136,7 @@ static endat_error take_apart(const endat_card *card, endat_stream *stream, enda
     return ENDAT_OK;
 }
 
-/** One more byte; ENDAT_NOTHING until a set is whole. */
+/** Processes a byte; ENDAT_NOTHING until a set is complete. */
 static endat_error take_byte(const endat_card *card, endat_stream *stream, uint8_t byte, endat_set *set)
 {
     endat_error error = ENDAT_NOTHING;
@@ -153,7 +153,7 @@ static endat_error take_byte(const endat_card *card, endat_stream *stream, uint8
         error = take_apart(card, stream, set);
         stream->count = 0u;
     } else {
-        /* Nothing between two zeros. */
+        /* Empty frame between two zeros. */
         error = ENDAT_NOTHING;
     }
     return error;
@@ -161,7 +161,7 @@ static endat_error take_byte(const endat_card *card, endat_stream *stream, uint8
 
 endat_error endat_stream_next(const endat_card *card, endat_stream *stream, endat_set *set)
 {
-    /* A buffer's bytes at most in one call: who reads more slowly than the card writes must come out of it, too. */
+    /* At most the bytes of one buffer in a call, so that it returns even if the card writes faster than the host reads. */
     uint32_t words = ENDAT_SET_BYTES;
     endat_error error = endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_STREAM) ? ENDAT_NOTHING : ENDAT_ERROR_PART;
     bool is_empty = false;
@@ -179,7 +179,7 @@ endat_error endat_stream_next(const endat_card *card, endat_stream *stream, enda
             is_empty = (ENDAT_MAP_GET(ENDAT_MAP_CARD_STREAM_STATE_BYTES, state) == 0u) || (words == 0u);
             if ((read == ENDAT_OK) && !is_empty) {
                 words--;
-                /* Bytes that are not there are 0, which means nothing between two sets. */
+                /* Missing bytes read 0, which separates sets. */
                 read = endat_read_word(card, ENDAT_MAP_CARD_STREAM_DATA_WORD, &stream->word);
                 stream->left = (read == ENDAT_OK) ? 4u : 0u;
             }

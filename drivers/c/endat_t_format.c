@@ -1,14 +1,14 @@
 /**
  * @file endat_t_format.c
- * The port of a T-format encoder: requests beside the triggers, the encoder's EEPROM, settings.
+ * The port of a T-format encoder: requests in addition to triggers, the encoder's EEPROM, settings.
  */
 #include "endat.h"
 #include "endat_internal.h"
 
-/** An exchange is over after so long, whatever comes: the longest pauses that can be set, and all fields at the slowest bit. */
+/** Upper limit of an exchange: the longest configurable pauses, and all fields at the slowest bit rate. */
 #define EXCHANGE_US 2000u
 
-/** Waits until a bit of the answer is set, or is not. */
+/** Waits until a bit of the answer is set, or cleared. */
 static endat_error answer_when(const endat_card *card, uint32_t channel, uint32_t mask, bool is_set, endat_wait *wait, uint32_t *answer)
 {
     bool is_in_time = true;
@@ -17,7 +17,7 @@ static endat_error answer_when(const endat_card *card, uint32_t channel, uint32_
     while (error == ENDAT_ERROR_BUSY) {
         error = endat_read_word(card, ENDAT_MAP_T_FORMAT_ANSWER_WORD(channel), answer);
         if ((error == ENDAT_OK) && (((*answer & mask) != 0u) != is_set)) {
-            /* The last look comes behind the last pause. */
+            /* The last poll comes after the last pause. */
             error = is_in_time ? ENDAT_ERROR_BUSY : ENDAT_ERROR_TIMEOUT;
             is_in_time = is_in_time && endat_wait_more(wait, ENDAT_REQUEST_PAUSE_US);
         }
@@ -25,14 +25,14 @@ static endat_error answer_when(const endat_card *card, uint32_t channel, uint32_
     return error;
 }
 
-/** A request as it is written; its parts fit. */
+/** A request word; its parts fit. */
 static uint32_t request_word(uint32_t id, uint32_t address, uint32_t data)
 {
     return ENDAT_MAP_PUT(ENDAT_MAP_T_FORMAT_SEND_ID, id) | ENDAT_MAP_PUT(ENDAT_MAP_T_FORMAT_SEND_ADDRESS, address) |
            ENDAT_MAP_PUT(ENDAT_MAP_T_FORMAT_SEND_DATA, data);
 }
 
-/** Sends a request that nobody is before, and waits for the end of the exchange. */
+/** Sends a request when none is pending, and waits for the end of the exchange. */
 static endat_error exchange_once(const endat_card *card, uint32_t channel, uint32_t request, uint32_t *answer)
 {
     endat_wait wait;
@@ -45,20 +45,20 @@ static endat_error exchange_once(const endat_card *card, uint32_t channel, uint3
     return error;
 }
 
-/** Whether a request clears something. */
+/** True if a request clears something. */
 static bool is_reset(uint32_t id)
 {
     return (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_ERRORS) || (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_SINGLE_TURN) ||
            (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_MULTI_TURN);
 }
 
-/** Whether this comes with a good reply. */
+/** True if this cause comes with a good reply. */
 static bool is_alarm(uint8_t cause)
 {
     return (cause == ENDAT_CAUSE_COUNTING_ERROR) || (cause == ENDAT_CAUSE_MULTI_TURN_ALARM);
 }
 
-/** The answer of before, if there is one, is made to repeat another ID than that of the next request. */
+/** Makes sure that the previous answer, if any, has another ID than the next request. */
 static endat_error tell_apart(const endat_card *card, uint32_t channel, uint32_t id, endat_wait *wait)
 {
     uint32_t answer = 0u;
@@ -67,7 +67,7 @@ static endat_error tell_apart(const endat_card *card, uint32_t channel, uint32_t
                                                                          : ENDAT_MAP_T_FORMAT_SEND_ID_ENCODER_ID;
     const bool is_done = (answer & ENDAT_MAP_T_FORMAT_ANSWER_DONE_MASK) != 0u;
 
-    /* Resets count in a row only. */
+    /* Resets must be consecutive. */
     if ((error == ENDAT_OK) && is_done && (ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_ID, answer) == id) && !is_reset(id)) {
         error = exchange_once(card, channel, request_word(other, 0u, 0u), &answer);
     }
@@ -87,7 +87,7 @@ static endat_error exchange_within(const endat_card *card, uint32_t channel, uin
     uint32_t answer = 0u;
     bool is_in_time = true;
     bool is_lost = true;
-    /* A write that is lost leaves the answer of before: another ID between tells. */
+    /* After a lost write the previous answer remains; another ID in between distinguishes it. */
     endat_error error = tell_apart(card, channel, id, wait);
 
     clear_reply(reply);
@@ -131,7 +131,7 @@ endat_error endat_exchange(const endat_card *card, uint32_t channel, uint32_t id
     return error;
 }
 
-/** An exchange with the EEPROM, when it is no longer busy with what was written before. */
+/** An exchange with the EEPROM, after the end of an earlier write. */
 static endat_error eeprom(const endat_card *card, uint32_t channel, uint32_t request, endat_wait *wait, endat_reply *reply)
 {
     endat_error error = exchange_within(card, channel, request, wait, reply);
@@ -147,7 +147,7 @@ static endat_error eeprom(const endat_card *card, uint32_t channel, uint32_t req
     return error;
 }
 
-/** A T-format channel, and an address that there is. */
+/** Checks for a T-format channel and a valid address. */
 static endat_error needs_address(const endat_card *card, uint32_t channel, uint32_t address)
 {
     endat_error error = endat_needs_t_format(card, channel);
@@ -191,7 +191,7 @@ endat_error endat_write_eeprom(const endat_card *card, uint32_t channel, uint32_
     return error;
 }
 
-/** What is to be reset, how long it may take, and what comes back. */
+/** Reset request, its limit, and the reply. */
 typedef struct {
     uint32_t id;
     uint32_t limit_ms;
@@ -274,12 +274,12 @@ static bool are_allowed(const endat_t_format_settings *s)
                         (s->bit_cycles <= ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_T_FORMAT_MAX);
     const bool is_gap = (s->reply_gap_us >= ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_T_FORMAT_MIN) &&
                         (s->reply_gap_us <= ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_T_FORMAT_MAX);
-    /* A trigger goes neither to the EEPROM, nor does it clear something. */
+    /* A trigger may neither access the EEPROM nor clear something. */
     const bool is_request = (s->request_id == ENDAT_MAP_T_FORMAT_SEND_ID_SINGLE_TURN) ||
                             (s->request_id == ENDAT_MAP_T_FORMAT_SEND_ID_MULTI_TURN) ||
                             (s->request_id == ENDAT_MAP_T_FORMAT_SEND_ID_ENCODER_ID) ||
                             (s->request_id == ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING);
-    /* A filter of half a bit leaves nothing of it. */
+    /* A filter of half a bit removes all bits. */
     const bool is_filter = ENDAT_FITS(ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES, s->filter_cycles) &&
                            ((2u * s->filter_cycles) < s->bit_cycles);
 

@@ -11,49 +11,49 @@
 extern "C" {
 #endif
 
-/** Bytes of the longest frame on SPI: head, a byte of anything, words, check sum. */
+/** Bytes of the longest frame on SPI: head, an idle byte, words, check sum. */
 #define ENDAT_SPI_BYTES (5u + (4u * ENDAT_BURST_WORDS) + 2u)
 
 /**
- * A card on SPI: mode 0, most significant bit first, at most an eighth of the system clock. Each frame has its check sum; a frame that
- * was disturbed is sent again. Lives as long as the link.
+ * A card on SPI: mode 0, most significant bit first, at most an eighth of the system clock. Each frame has a check sum; a disturbed
+ * frame is sent again. Must live as long as the link.
  */
 typedef struct {
-    void *context; /**< Comes back in transfer. */
+    void *context; /**< Passed to transfer. */
     /** Sends count bytes while it receives as many, chip select low from the first to the last. */
     endat_error (*transfer)(void *context, const uint8_t *sent, uint8_t *received, uint32_t count);
-    uint32_t tries;                    /**< How often a frame goes out at most; 0 counts as 1. */
+    uint32_t tries;                    /**< Largest number of transmissions of a frame; 0 counts as 1. */
     /**
-     * False: a write takes four frames, and has arrived when it is told as done; a disturbed one goes out again, so that a trigger may
-     * come twice. True: it is one frame, and nobody knows.
+     * False: a write takes four frames and is confirmed; a disturbed one is sent again, so that a trigger may
+     * occur twice. True: a write is one frame without confirmation.
      */
     bool unconfirmed;
-    uint32_t disturbed;                /**< Frames that had to go out again, for you to look at. */
-    uint8_t sent[ENDAT_SPI_BYTES];     /**< The driver's. */
-    uint8_t received[ENDAT_SPI_BYTES]; /**< The driver's. */
+    uint32_t disturbed;                /**< Number of repeated frames, for diagnosis. */
+    uint8_t sent[ENDAT_SPI_BYTES];     /**< Used by the driver. */
+    uint8_t received[ENDAT_SPI_BYTES]; /**< Used by the driver. */
 } endat_spi;
 
-/** Makes a link of it; its hooks for the time are yours to set. */
+/** Makes a link of it; set its time hooks yourself. */
 void endat_spi_link(endat_spi *spi, endat_link *link);
 
-/** A card on the parallel bus: eight registers of 16 bits. Lives as long as the link. */
+/** A card on the parallel bus: eight registers of 16 bits. Must live as long as the link. */
 typedef struct {
-    void *context;                                                               /**< Comes back in both. */
+    void *context;                                                               /**< Passed to both. */
     uint16_t (*get)(void *context, uint32_t bus_register);                       /**< Reads a register of the bus, 0 to 7. */
-    void (*put)(void *context, uint32_t bus_register, uint16_t value);           /**< Writes one. */
+    void (*put)(void *context, uint32_t bus_register, uint16_t value);           /**< Writes a register. */
 } endat_parallel;
 
 /** Makes a link of it. */
 void endat_parallel_link(endat_parallel *parallel, endat_link *link);
 
-/** A card on a UART: 8N1. The format has no check sum; the stream is read, not pushed. Lives as long as the link. */
+/** A card on a UART: 8N1. The format has no check sum; the stream is read, not pushed. Must live as long as the link. */
 typedef struct {
-    void *context;                                                                 /**< Comes back in both. */
-    endat_error (*send)(void *context, const uint8_t *bytes, uint32_t count);      /**< Sends all of them. */
-    endat_error (*receive)(void *context, uint8_t *bytes, uint32_t count);         /**< Receives all of them, or ends in time. */
+    void *context;                                                                 /**< Passed to both. */
+    endat_error (*send)(void *context, const uint8_t *bytes, uint32_t count);      /**< Sends all bytes. */
+    endat_error (*receive)(void *context, uint8_t *bytes, uint32_t count);         /**< Receives all bytes, or times out. */
 } endat_uart;
 
-/** Makes a link of it. After an error of the link wait 100 ms: the card has forgotten the command then. */
+/** Makes a link of it. After an error of the link wait 100 ms, until the card has dropped the command. */
 void endat_uart_link(endat_uart *uart, endat_link *link);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-//! Rows of a recording as columns of numbers, as numpy takes them.
+//! Rows of a recording as columns of numbers, for numpy.
 
 use endat_driver::AdditionalData;
 use endat_host::feed::{Cell, Row};
@@ -6,10 +6,10 @@ use endat_host::units::Scale;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 
-/// In the place of the channel whose running clock brought a position: a trigger did.
+/// Value of `run` for rows of triggers.
 const NO_RUN: i8 = -1;
 
-/// The bytes of numbers, one after the other.
+/// The bytes of consecutive numbers.
 macro_rules! bytes {
     ($py:expr, $numbers:expr) => {{
         let all: Vec<u8> = $numbers.flat_map(|n| n.to_ne_bytes()).collect();

@@ -1,19 +1,19 @@
-//! What goes wrong, on its way to the exceptions of `endat.errors`.
+//! Converts errors to the exceptions of `endat.errors`.
 
 use endat_host::HostError;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
-/// Which exception it becomes.
+/// Python exception.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
-    /// `EndatError`: the link is gone, or what answers is no card.
+    /// `EndatError`: the link is lost, or the answer does not come from a card.
     Link,
-    /// `BadInput`: a name or number that the user gave.
+    /// `BadInput`: a wrong name or number from the user.
     BadInput,
-    /// `Refused`: the encoder, the line or the card refused.
+    /// `Refused`: the encoder, the line or the card rejected the request.
     Refused,
-    /// `Silent`: nothing answers.
+    /// `Silent`: no answer.
     Silent,
 }
 
@@ -25,11 +25,11 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// With this text.
+    /// A fault with this text.
     pub fn new(kind: Kind, text: impl Into<String>) -> Self {
         Self {
             kind,
-            // Names of options of the program are those of arguments here.
+            // Options of the program are arguments here.
             text: text.into().replace("--", ""),
         }
     }

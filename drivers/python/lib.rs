@@ -1,4 +1,4 @@
-//! What the Python package `endat` has of the Rust program: a card at the other end of a link, or simulated in this process.
+//! The Rust part of the Python package `endat`: a card at a link, or simulated in this process.
 //!
 //! ```text
 //! endat.Card (Python) -> NativeCard -> endat_host::owner, a thread that owns the card -> endat_host::Card

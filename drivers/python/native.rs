@@ -2,7 +2,7 @@
 
 use crate::columns;
 use crate::fault::{Fault, Kind};
-use endat_gen::virtual_card::{card_at, is_virtual};
+use endat_card::{card_at, is_virtual};
 use endat_host::causes;
 use endat_host::feed::{cause_codes, NO_CAUSES};
 use endat_host::mailbox::Request;
@@ -40,13 +40,13 @@ pub fn connect(
     Ok(NativeCard(Mutex::new(Some(handle))))
 }
 
-/// Names that stand in the place of a cause, with their codes.
+/// Names that may replace a cause, with their codes.
 #[pyfunction]
 pub fn cause_names() -> Vec<(u8, &'static str)> {
     cause_codes().collect()
 }
 
-/// What a cause means and what helps.
+/// Explanation of a cause, with the remedy.
 #[pyfunction]
 pub fn explain_cause(name: &str) -> Option<String> {
     let other = NO_CAUSES.iter().find(|(known, _)| *known == name);
@@ -54,23 +54,23 @@ pub fn explain_cause(name: &str) -> Option<String> {
     other.map(|(_, means)| (*means).to_owned()).or_else(known)
 }
 
-/// Tells the user how to give the range of a channel.
+/// Remedy for an unknown range of a channel.
 fn remedy(channel: usize) -> String {
     format!("give connect() ranges={{{channel}: \"SINGLE+MULTI\"}} (bits of the angle and bits that count turns, as in {{{channel}: \"17+16\"}}) or {{{channel}: \"linear\"}}")
 }
 
-/// Lets Ctrl-C through.
+/// Handles Ctrl-C.
 fn look() -> PyResult<()> {
     Python::attach(|py| py.check_signals())
 }
 
-/// A card; none when it has been closed.
+/// A card; `None` after it has been closed.
 #[pyclass(frozen)]
 pub struct NativeCard(Mutex<Option<Handle>>);
 
 impl NativeCard {
     fn handle(&self) -> MutexGuard<'_, Option<Handle>> {
-        // Nothing is done under the lock that could leave it half done.
+        // No operation under the lock can leave it half done.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -110,7 +110,7 @@ fn plate<'py>(py: Python<'py>, plate: &NamePlate) -> PyResult<Bound<'py, PyDict>
 
 #[pymethods]
 impl NativeCard {
-    /// Who it is.
+    /// Identity of the card.
     fn identity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let identity = self.call(py, |w| Ok(*w.card.identity()))?;
         let all = PyDict::new(py);
@@ -128,12 +128,12 @@ impl NativeCard {
         Ok(all)
     }
 
-    /// Waits until no encoder is being initialised and every channel has had a result, or has none after a second.
+    /// Waits until no encoder is being initialised and every channel has a result, or a second has passed.
     fn settle(&self, py: Python<'_>) -> PyResult<()> {
         self.call(py, |w| w.card.settle(|| ()))
     }
 
-    /// Name plates; none of a channel whose encoder the card does not read.
+    /// Name plates; `None` for a channel whose encoder the card does not read.
     fn name_plates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let plates = self.call(py, |w| w.card.name_plates())?;
         let all = PyList::empty(py);
@@ -171,12 +171,12 @@ impl NativeCard {
         Ok(all)
     }
 
-    /// Where a name plate contradicts the configuration.
+    /// Contradictions between name plates and configuration.
     fn scale_notes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         self.call(py, |w| w.card.scale_notes())
     }
 
-    /// Latest results of all channels, of one moment.
+    /// Latest results of all channels, from one instant.
     fn read<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let (readings, scales) = self.call(py, |w| {
             if w.scales.is_empty() {
@@ -209,7 +209,7 @@ impl NativeCard {
         self.call(py, move |w| w.begin(polls))
     }
 
-    /// Up to `count` rows as columns; fewer, or none, if no more have come.
+    /// Up to `count` rows as columns; fewer, or none, if no more have arrived.
     fn take<'py>(&self, py: Python<'py>, count: usize) -> PyResult<Bound<'py, PyDict>> {
         let (rows, scales, has_infos) = self.call(py, move |w| {
             let rows = w.take(count)?;
@@ -224,13 +224,13 @@ impl NativeCard {
         columns::of(py, &rows, &scales, has_infos)
     }
 
-    /// Frames damaged on the link, and sets that the card itself has dropped, since the recording began.
+    /// Frames damaged on the link, and sets dropped by the card, since the recording began.
     fn losses(&self, py: Python<'_>) -> PyResult<(u64, u64)> {
         let losses = self.call(py, |w| Ok(w.losses()))?;
         Ok((losses.damaged, losses.dropped))
     }
 
-    /// Ends the recording, if there is one.
+    /// Ends the recording, if any.
     fn end(&self, py: Python<'_>) -> PyResult<()> {
         self.call(py, Owner::end)
     }
@@ -240,7 +240,7 @@ impl NativeCard {
         self.call(py, move |w| w.card.read_named(&name))
     }
 
-    /// Writes a word or field; what the register map forbids is refused, unless `force`.
+    /// Writes a word or field; values that the register map forbids are rejected, unless `force`.
     fn write_register(
         &self,
         py: Python<'_>,
@@ -253,7 +253,7 @@ impl NativeCard {
             if !force {
                 w.card.permits(&place, value)?;
             }
-            // What a step is may have changed with it.
+            // The write may have changed the scales.
             w.scales.clear();
             w.card.write(&place, value)
         })
@@ -289,7 +289,7 @@ impl NativeCard {
         })
     }
 
-    /// Sends a mode command; 8 bits, 16 bits and all bits of what came back.
+    /// Sends a mode command; returns 8 bits, 16 bits and all bits of the answer.
     fn request(
         &self,
         py: Python<'_>,
@@ -310,7 +310,7 @@ impl NativeCard {
         })
     }
 
-    /// Ends it all.
+    /// Closes the card.
     fn close(&self, py: Python<'_>) {
         py.detach(|| {
             let handle = self.handle().take();

@@ -1,4 +1,4 @@
-//! The card itself: who it is, its words, its results, its triggers.
+//! The card: identity, words, results, triggers.
 
 use crate::error::Error;
 use crate::facts::Facts;
@@ -10,16 +10,16 @@ use endat_regs::{
     Part, Protocol, Protocols, BLOCK_STRIDE, CHANNELS_MAX, FEATURES_BITS, ID, RESULT_BASE, VERSION,
 };
 
-/// How often a moment is tried word by word before the results are held.
+/// Number of tries to read one instant word by word before the results are held.
 const MOMENT_TRIES: usize = 3;
-/// How often a word is written that reads back as another one.
+/// Number of writes of a word that reads back with another value.
 const WRITE_TRIES: usize = 2;
-/// Pause between two looks at results.
+/// Pause between two polls of results.
 const RESULT_PAUSE_US: u32 = 5;
-/// Patterns for the scratch bits: exchanged bytes, writes that do not arrive, addresses that are off.
+/// Patterns for the scratch bits, which detect swapped bytes, lost writes and wrong addresses.
 const PATTERNS: [u32; 4] = [0x00AA_5501, 0x0055_AAFE, 0x0001_0280, 0];
 
-/// A card behind a link.
+/// A card at a link.
 #[derive(Debug)]
 pub struct Card<L, D> {
     pub(crate) link: L,
@@ -43,7 +43,7 @@ impl Wait {
         Self { left_us }
     }
 
-    /// Pauses; `false` if the limit has passed: one more look, and it is over.
+    /// Pauses; `false` after the limit: poll once more, then stop.
     pub(crate) fn more(&mut self, delay: &mut impl DelayNs, pause_us: u32) -> bool {
         delay.delay_us(pause_us);
         self.left_us = self.left_us.saturating_sub(pause_us.into());
@@ -52,9 +52,9 @@ impl Wait {
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {
-    /// Finds out who answers. Refuses what is no card, another major version of the register map and, if a hash is given (the first 8
-    /// digits of the configuration's, as the generated files have it), a card of another configuration. Give `&mut link` to keep the link
-    /// where that fails.
+    /// Identifies the card. Rejects anything else, another major version of the register map and, if a hash is given (the first 8
+    /// digits of the configuration hash in the generated files), a card with another configuration. Give `&mut link` to keep the link
+    /// after an error.
     pub fn open(mut link: L, delay: D, hash: Option<u32>) -> Result<Self, Error<L::Error>> {
         let id = link.read(word!(CARD.id))?;
         let version = link.read(word!(CARD.version))?;
@@ -92,27 +92,27 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// Gives link and delay back.
+    /// Returns link and delay.
     pub fn release(self) -> (L, D) {
         (self.link, self.delay)
     }
 
-    /// The link, as for what it has counted.
+    /// The link, for example to read its counters.
     pub const fn link(&self) -> &L {
         &self.link
     }
 
-    /// The link, to change how it goes about.
+    /// The link, to change its settings.
     pub const fn link_mut(&mut self) -> &mut L {
         &mut self.link
     }
 
-    /// What the card says of itself.
+    /// Identification of the card.
     pub const fn facts(&self) -> &Facts {
         &self.facts
     }
 
-    /// Reads a word, for all that has no call of its own: see `endat_regs`.
+    /// Reads a word, for words without a separate call: see `endat_regs`.
     pub fn read_word(&mut self, word_address: u32) -> Result<u32, Error<L::Error>> {
         self.link.read(word_address)
     }
@@ -122,7 +122,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.link.write(word_address, value)
     }
 
-    /// Writes a word that keeps what is written, and reads it back; once more if it is another one.
+    /// Writes a word that keeps the written value, and reads it back; tries once more if it differs.
     pub fn write_checked(&mut self, word_address: u32, value: u32) -> Result<(), Error<L::Error>> {
         for _ in 0..WRITE_TRIES {
             self.link.write(word_address, value)?;
@@ -133,7 +133,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Err(Error::ReadBack)
     }
 
-    /// Tries the link: writes patterns into bits that are free for that, and reads them back. Results that are held are let go.
+    /// Tests the link: writes patterns into the scratch bits, and reads them back. Held results are released.
     pub fn try_link(&mut self) -> Result<(), Error<L::Error>> {
         let address = word!(CARD_CONFIG.hold);
         for pattern in PATTERNS {
@@ -143,8 +143,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(())
     }
 
-    /// Reads the results of all channels, of one moment: with one burst where the link has it, else word by word and once more if a
-    /// result came between, and at last with the card's hold. Each position is checked against its CRC; what does not fit is read again.
+    /// Reads the results of all channels from one instant: with one burst if the link supports it, else word by word, again if a
+    /// result came in between, and finally with the card's hold. Each position is checked against its CRC; a mismatch is read again.
     pub fn read_moment(&mut self) -> Result<Moment, Error<L::Error>> {
         let moment = self.look_at_one_moment()?;
         match moment.results().iter().all(|result| result.fits) {
@@ -177,7 +177,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(Moment::new(&words, &self.facts))
     }
 
-    /// Reads the words of all results, rising; those between two results are left out.
+    /// Reads the words of all results in rising order, without those between two results.
     fn look(&mut self, words: &mut [u32]) -> Result<(), Error<L::Error>> {
         let each = endat_regs::result_words(1, self.facts.has(Part::Requests)) as usize;
         for (at, word) in words.iter_mut().enumerate() {
@@ -188,7 +188,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(())
     }
 
-    /// Whether no result has come since these words were read: then all of them are of one moment.
+    /// True if no result has come since these words were read: all of them belong to one instant.
     fn is_same(&mut self, words: &[u32]) -> Result<bool, Error<L::Error>> {
         for channel in 0..self.facts.channels {
             let status = self.link.read(word!(RESULT.status, channel))?;
@@ -199,32 +199,32 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(true)
     }
 
-    /// The same while the card holds its results.
+    /// Reads the words while the card holds its results.
     fn look_held(&mut self, words: &mut [u32]) -> Result<(), Error<L::Error>> {
         let address = word!(CARD_CONFIG.hold);
         let hold = field!(CARD_CONFIG.hold.hold).mask();
         let free = self.link.read(address)? & !hold;
         let held = self.write_checked(address, free | hold);
         let looked = held.and_then(|()| self.look(words));
-        // After every error, too: results that stand still for ever are worse.
+        // Release after every error, too: frozen results would be worse.
         let let_go = self.put_back(address, free);
         looked.and(let_go)
     }
 
-    /// Triggers all channels that take it. Two triggers are a cycle apart at least: `explain` shows it.
+    /// Triggers all channels that accept it. Two triggers must be at least a frame apart: `explain` prints the time.
     pub fn trigger(&mut self) -> Result<(), Error<L::Error>> {
         let trigger = field!(CARD.trigger_now.trigger).mask();
         self.link.write(word!(CARD.trigger_now), trigger)
     }
 
-    /// Triggers, and waits until every channel has its result. Timer and pin may go on: each result is of this trigger or of a later one,
-    /// and not stale. [`Error::Timeout`]: at least one has none, as while its encoder is
+    /// Triggers, and waits until every channel has its result. Timer and pin may continue: each result belongs to this trigger or to a later one,
+    /// and is not stale. [`Error::Timeout`]: at least one channel has no result, for example because its encoder is
     /// unplugged; [`Card::read_moment`] has the others, and that channel is stale.
     pub fn measure(&mut self, limit_us: u32) -> Result<Moment, Error<L::Error>> {
         self.measure_channels(u32::MAX, limit_us)
     }
 
-    /// The same for some of the channels, bit n for channel n: nobody waits for the others, as for one without an encoder.
+    /// As [`Card::measure`] for some of the channels, bit n for channel n; it does not wait for the others.
     pub fn measure_channels(
         &mut self,
         channels: u32,
@@ -234,7 +234,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.trigger()?;
         let mut wait = Wait::of_us(limit_us);
         loop {
-            // The last look comes behind the last pause.
+            // The last poll comes after the last pause.
             let is_in_time = self.pause(&mut wait, RESULT_PAUSE_US);
             let mut moment = self.read_moment()?;
             moment.since(&before);
@@ -257,7 +257,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// Lets channels measure their line delay again with their next frame; bit n for channel n.
+    /// Channels measure their line delay again with their next frame; bit n for channel n.
     pub fn calibrate(&mut self, channels: u32) -> Result<(), Error<L::Error>> {
         let word = field!(CARD.calibrate.channels).put(0, channels);
         let word = word.filter(|_| channels >> self.facts.channels == 0);
@@ -265,7 +265,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.link.write(word!(CARD.calibrate), word)
     }
 
-    /// Writes a word that others wait for, also where one access fails.
+    /// Writes a word on which others depend, also after a failed access.
     pub(crate) fn put_back(&mut self, address: u32, value: u32) -> Result<(), Error<L::Error>> {
         let once = self.write_checked(address, value);
         once.or_else(|_| self.write_checked(address, value))
@@ -282,12 +282,12 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// An EnDat channel of this card.
+    /// Checks for an EnDat channel.
     pub(crate) fn needs_endat(&self, channel: usize) -> Result<(), Error<L::Error>> {
         self.needs_protocol(channel, Protocol::Endat)
     }
 
-    /// A channel of this card that speaks this protocol.
+    /// Checks for a channel with this protocol.
     pub(crate) fn needs_protocol(
         &self,
         channel: usize,
@@ -300,7 +300,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// An EnDat channel with a service.
+    /// Checks for an EnDat channel with a service.
     pub(crate) fn needs_service(&self, channel: usize) -> Result<(), Error<L::Error>> {
         self.needs_endat(channel)?;
         self.needs(Part::Requests)

@@ -1,61 +1,61 @@
-//! What can become of a call.
+//! Errors of the calls.
 
 use crate::answer::Answer;
 use core::fmt;
 use endat_regs::service::STEPS;
 use endat_regs::{causes, Part};
 
-/// Why a call did not do what it should.
+/// Error of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error<E> {
-    /// An argument is outside of what the card takes.
+    /// An argument is outside the supported range.
     Argument,
-    /// The bus refused the access, or did not answer.
+    /// The bus rejected the access, or did not answer.
     Link(E),
-    /// A check sum was wrong, also when it was tried again.
+    /// The check sum was wrong in all tries.
     CheckSum,
-    /// What answers is no card.
+    /// The answer does not come from a card.
     NoCard,
     /// The card has another major version of the register map.
     Version {
-        /// The one that it has.
+        /// Version of the card.
         found: u8,
     },
-    /// The card was made from another configuration than the one expected.
+    /// The card has another configuration than expected.
     Configuration {
-        /// First 8 digits of the hash of its own.
+        /// First 8 digits of its hash.
         found: u32,
     },
-    /// The card does not have the part that this takes.
+    /// The card does not have the required part.
     Part(Part),
-    /// The channel speaks another protocol, which does not have this.
+    /// The channel has another protocol, which does not support this.
     Protocol,
-    /// It did not end in time.
+    /// The limit has passed.
     Timeout,
-    /// It is still under way: ask again.
+    /// The operation is still under way: ask again.
     Busy,
-    /// The card or its service has begun anew, or another master has asked: what became of the request is not known.
+    /// The card or its service has restarted, or another master has sent a request: the outcome of the request is unknown.
     Restarted,
-    /// A setting reads back as another one than was written.
+    /// A setting reads back with another value than written.
     ReadBack,
     /// DATA is HIGH: no encoder, no supply, or an open line.
     Unplugged,
     /// The encoder could not be initialised.
     Initialisation {
-        /// The step that failed.
+        /// Failed step.
         step: u8,
     },
-    /// The encoder did not fulfil the request; the answer's refusal tells why.
+    /// The encoder rejected the request; the answer's refusal has the reason.
     Refused(Answer),
     /// The exchange with a T-format encoder failed.
     Exchange {
-        /// Why, a number of `endat_regs::causes::ALL`.
+        /// Cause, a number of `endat_regs::causes::ALL`.
         cause: u8,
     },
-    /// The source "register" is not enabled: a trigger from here does nothing.
+    /// The source "register" is not enabled, so this trigger has no effect.
     TriggerOff,
-    /// A set of the stream was damaged; the next one is a good one again.
+    /// A set of the stream was damaged; the next one is good again.
     Set,
 }
 
@@ -63,56 +63,56 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Argument => f.write_str(
-                "argument outside of what the card takes: see the register map, and Card::facts() for what this card has",
+                "argument outside the supported range: see the register map, and Card::facts() for the parts of this card",
             ),
             Self::Link(error) => write!(
                 f,
-                "the bus refused the access or did not answer ({error:?}): check base address, clock and reset of the card"
+                "the bus rejected the access or did not answer ({error:?}): check base address, clock and reset of the card"
             ),
             Self::CheckSum => f.write_str(
-                "check sum wrong, also when tried again: check the lines, lower the serial clock",
+                "check sum wrong in all tries: check the lines, lower the serial clock",
             ),
             Self::NoCard => {
                 f.write_str("no card answers: check base address, byte order and, on SPI, the mode")
             }
             Self::Version { found } => write!(
                 f,
-                "the card has version {found} of the register map, not {}: take the driver that came with the card",
+                "the card has version {found} of the register map, not {}: use the driver that was generated with the card",
                 endat_regs::VERSION[0]
             ),
             Self::Configuration { found } => write!(
                 f,
-                "the card was made from another configuration ({found:08x}): load the bitstream that belongs to this program"
+                "the card has another configuration ({found:08x}): load the bitstream that belongs to this program"
             ),
             Self::Part(part) => write!(
                 f,
-                "the card does not have the part {}: emit one that has it",
+                "the card does not have the part {}: generate a card with it",
                 part.named().name
             ),
             Self::Protocol => f.write_str(
-                "the channel speaks another protocol, which does not have this: Card::facts() tells which",
+                "the channel has another protocol, which does not support this: see Card::facts()",
             ),
             Self::Timeout => {
-                f.write_str("not ended in time: is a trigger enabled, is the encoder plugged in?")
+                f.write_str("timeout: check that a trigger is enabled and the encoder is plugged in")
             }
             Self::Busy => f.write_str("still under way: ask again"),
             Self::Restarted => f.write_str(
-                "the card or its service has begun anew, or another master has asked: ask again, write alarms and additional data again",
+                "the card or its service has restarted, or another master has sent a request: send it again, write alarms and additional data again",
             ),
             Self::ReadBack => f.write_str(
-                "the setting reads back as another one: is another master writing, is the link disturbed?",
+                "the setting reads back with another value: check for a second master and a disturbed link",
             ),
             Self::Unplugged => f.write_str(
-                "no encoder: check plug, supply and both lines of DATA; the card goes on by itself",
+                "no encoder: check plug, supply and both lines of DATA; the card recovers automatically",
             ),
             Self::Initialisation { step } => write!(
                 f,
-                "the encoder could not be initialised, it failed in step {step} ({}): look at the cause of the last result",
+                "the encoder could not be initialised, it failed in step {step} ({}): check the cause of the last result",
                 STEPS.get(usize::from(*step)).map_or("unknown", |s| s.meaning)
             ),
             Self::Refused(answer) => write!(
                 f,
-                "the encoder did not fulfil the request: {}",
+                "the encoder rejected the request: {}",
                 answer.refusal_meaning()
             ),
             Self::Exchange { cause } => write!(
@@ -121,13 +121,13 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 causes::of(*cause).map_or("unknown", |cause| cause.name),
                 causes::of(*cause)
                     .and_then(|cause| causes::advice(cause.name))
-                    .map_or("the driver does not know why", |[_, remedy]| remedy),
+                    .map_or("unknown to this driver", |[_, remedy]| remedy),
             ),
             Self::TriggerOff => f.write_str(
                 "the trigger source \"register\" is not enabled: Card::set_triggers()",
             ),
             Self::Set => f.write_str(
-                "a set of the stream was damaged: the link is disturbed, or another reader takes from it",
+                "a set of the stream was damaged: the link is disturbed, or another program reads it",
             ),
         }
     }

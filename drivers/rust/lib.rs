@@ -1,14 +1,14 @@
 //! Driver for cards with EnDat receivers: `no_std`, no heap, any bus.
 //!
-//! A card is reached through a [`Link`] of yours, which reads and writes words; everything else follows from the register table
-//! (`endat-regs`) and from what the card says of itself, so that one driver serves every card. [`Mapped`] is the link of a card in the
-//! memory of a processor, [`Spi`], [`Parallel`] and [`Uart`] are those of other buses.
+//! A [`Link`] of the user, which reads and writes words, accesses the card. Everything else follows from the register table
+//! (`endat-regs`) and from the card's identification, so one driver serves every card. [`Mapped`] is the link of a memory-mapped card,
+//! [`Spi`], [`Parallel`] and [`Uart`] are those of other buses.
 //!
 //! ```
 //! use embedded_hal::delay::DelayNs;
 //! use endat_driver::{Card, Error, Link};
 //!
-//! /// The angle of encoder 0, once it is there.
+//! /// The angle of encoder 0, when it is available.
 //! fn angle<L: Link, D: DelayNs>(link: L, delay: D) -> Result<i64, Error<L::Error>> {
 //!     let mut card = Card::open(link, delay, None)?;
 //!     card.wait_ready(0, 5_000)?;
@@ -18,9 +18,9 @@
 //! }
 //! ```
 //!
-//! One master talks to a card. Every call that waits has a limit; it is counted in the waits of the [`embedded_hal::delay::DelayNs`] that
-//! the card was opened with, so a slow bus makes it longer, never shorter. A call that goes on by itself is tried again where that is
-//! safe; what is told as done has been read back.
+//! Only one master may access a card. Every call that waits has a limit. It is counted in the waits of the [`embedded_hal::delay::DelayNs`] with
+//! which the card was opened, so a slow bus makes it longer, never shorter. A call retries failed accesses if that is
+//! safe; successful writes have been read back.
 
 #![no_std]
 

@@ -1,11 +1,11 @@
-//! How words of a card are reached.
+//! Access to the words of a card.
 
 use crate::error::Error;
 use core::convert::Infallible;
 
-/// Reads and writes words. Addresses count words; a bus that counts bytes takes four times that.
+/// Reads and writes words. Addresses count words; a byte-addressed bus needs four times that.
 pub trait Link {
-    /// What the bus says when an access fails.
+    /// Error of the bus.
     type Error;
 
     /// Reads a word.
@@ -14,7 +14,7 @@ pub trait Link {
     /// Writes a word.
     fn write(&mut self, word_address: u32, value: u32) -> Result<(), Error<Self::Error>>;
 
-    /// Reads words that follow each other as one command of the bus, which is one moment; `false` without doing so if the bus has no
+    /// Reads consecutive words with one command of the bus, from one instant; returns `false` without an access if the bus has no
     /// such command.
     fn read_burst(
         &mut self,
@@ -46,13 +46,13 @@ impl<L: Link + ?Sized> Link for &mut L {
     }
 }
 
-/// A card in the memory of the processor: behind APB, Wishbone or AXI4-Lite.
+/// A memory-mapped card: over APB, Wishbone or AXI4-Lite.
 #[derive(Debug)]
 pub struct Mapped {
     base: *mut u32,
 }
 
-// SAFETY: whoever made it has said that the memory is the card's and nobody else writes it, on no processor.
+// SAFETY: the caller of `new` guarantees that the memory belongs to the card and nothing else writes it, on any processor.
 #[allow(unsafe_code)]
 unsafe impl Send for Mapped {}
 
@@ -60,9 +60,9 @@ impl Mapped {
     /// The card whose first word is at `base`.
     ///
     /// # Safety
-    /// `base` is a multiple of 4; [`endat_regs::MAP_BYTES`] from there on are the card's, for as long as this lives, and nobody else
+    /// `base` is a multiple of 4; [`endat_regs::MAP_BYTES`] from there on belong to the card while this value lives, and nothing else
     /// writes them.
-    #[allow(unsafe_code)] // Only the program that knows its memory map can vouch for the address.
+    #[allow(unsafe_code)] // Only the program that knows its memory map can guarantee the address.
     pub const unsafe fn new(base: *mut u32) -> Self {
         Self { base }
     }
@@ -78,12 +78,12 @@ impl Mapped {
 impl Link for Mapped {
     type Error = Infallible;
 
-    #[allow(unsafe_code)] // `at` keeps to the memory that `new` was promised.
+    #[allow(unsafe_code)] // `at` stays within the memory guaranteed for `new`.
     fn read(&mut self, word_address: u32) -> Result<u32, Error<Infallible>> {
         Ok(unsafe { self.at(word_address)?.read_volatile() })
     }
 
-    #[allow(unsafe_code)] // `at` keeps to the memory that `new` was promised.
+    #[allow(unsafe_code)] // `at` stays within the memory guaranteed for `new`.
     fn write(&mut self, word_address: u32, value: u32) -> Result<(), Error<Infallible>> {
         unsafe { self.at(word_address)?.write_volatile(value) };
         Ok(())

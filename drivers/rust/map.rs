@@ -1,6 +1,6 @@
-//! Places of the register table, by name; one that is not there does not compile.
+//! Places of the register table, by name; an unknown name fails compilation.
 
-/// Word address of a register, of a channel if it is one of a channel.
+/// Word address of a register, with the channel for a register of a channel.
 macro_rules! word {
     ($block:ident.$register:ident) => {
         word!($block.$register, 0)

@@ -11,18 +11,18 @@ const HIGH_HALF: u8 = 7;
 const BUSY: u16 = 0x8000;
 const NO_READ: u16 = 0x4000;
 const ADDRESS_BITS: u32 = 0x07FF;
-/// Looks at the window until it must be free: the longest access takes some hundred system clocks, a look several.
+/// Polls of the window until it must be free: the longest access takes some hundred system clocks, a poll several.
 const LOOKS: u32 = 1_000;
 
 /// The eight registers of 16 bits of the parallel bus.
 pub trait Registers {
-    /// What an access says when it fails; `Infallible` for one that cannot.
+    /// Error of an access; `Infallible` if it cannot fail.
     type Error;
 
     /// Reads register 0 to 7.
     fn get(&mut self, register: u8) -> Result<u16, Self::Error>;
 
-    /// Writes it.
+    /// Writes register 0 to 7.
     fn put(&mut self, register: u8, value: u16) -> Result<(), Self::Error>;
 }
 
@@ -33,12 +33,12 @@ pub struct Parallel<R> {
 }
 
 impl<R: Registers> Parallel<R> {
-    /// The card behind these registers.
+    /// The card at these registers.
     pub const fn new(registers: R) -> Self {
         Self { registers }
     }
 
-    /// Gives the registers back.
+    /// Returns the registers.
     pub fn release(self) -> R {
         self.registers
     }
@@ -51,13 +51,13 @@ impl<R: Registers> Parallel<R> {
         self.registers.put(register, value).map_err(Error::Link)
     }
 
-    /// Waits for the access before, and lets another one begin.
+    /// Waits for the previous access, and starts another one.
     fn select(&mut self, word_address: u32, more: u16) -> Result<(), Error<R::Error>> {
         if word_address > ADDRESS_BITS {
             return Err(Error::Argument);
         }
         self.wait_for_window()?;
-        // Each write of the window sets the channel of registers 0 to 4, too, which this does not use.
+        // Each write of the window also sets the channel of registers 0 to 4, which the driver does not use.
         self.put(WINDOW, word_address as u16 | more)
     }
 

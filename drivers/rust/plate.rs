@@ -1,4 +1,4 @@
-//! What an encoder says of itself, decoded from the words of its memory that the initialisation has read.
+//! Name plate of an encoder, decoded from the words of its memory that the initialisation has read.
 
 use crate::card::Card;
 use crate::error::Error;
@@ -6,11 +6,11 @@ use crate::link::Link;
 use core::fmt::{self, Display, Write};
 use embedded_hal::delay::DelayNs;
 
-/// A number as it is printed on the encoder: letters, digits, letters. What cannot be printed is left out.
+/// A number as printed on the encoder: letters, digits, letters. Characters that cannot be printed are left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Number {
     before: [u8; 2],
-    /// Its digits.
+    /// The digits.
     pub number: u32,
     after: u8,
 }
@@ -28,7 +28,7 @@ impl Display for Number {
     }
 }
 
-/// Name plate of an encoder; what was not read is `None`.
+/// Name plate of an encoder; values that have not been read are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NamePlate {
     /// Width of the position.
@@ -47,7 +47,7 @@ pub struct NamePlate {
     pub serial: Option<Number>,
 }
 
-/// Names of the words that a name plate is decoded from.
+/// Names of the decoded words.
 const WORDS: [&str; 13] = [
     "position_bits",
     "encoder_type",
@@ -65,7 +65,7 @@ const WORDS: [&str; 13] = [
 ];
 
 impl NamePlate {
-    /// Decodes words; `word` gives one by its name, if it was read.
+    /// Decodes words; `word` returns a word by name, if it has been read.
     pub fn of(word: impl Fn(&str) -> Option<u16>) -> Self {
         let long =
             |low: &str, high: &str| Some(u32::from(word(low)?) | u32::from(word(high)?) << 16);
@@ -97,13 +97,13 @@ impl NamePlate {
         }
     }
 
-    /// Whether it measures angles; an encoder that has not said so is taken for one.
+    /// True if it measures angles; the default if its type is unknown.
     pub fn is_rotary(&self) -> bool {
         self.rotary.unwrap_or(true)
     }
 }
 
-/// A line for each thing that is known, as `endat-gen id` prints them.
+/// A line for each known value, as in `endat id`.
 impl Display for NamePlate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let is_rotary = self.is_rotary();
@@ -134,7 +134,7 @@ impl Display for NamePlate {
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {
-    /// Reads the name plate of a channel's encoder; on a card without the part `initialise` that is [`Error::Part`].
+    /// Reads the name plate of a channel's encoder; [`Error::Part`] on a card without the part `initialise`.
     pub fn read_name_plate(&mut self, channel: usize) -> Result<NamePlate, Error<L::Error>> {
         let mut words = [None; WORDS.len()];
         for (word, name) in words.iter_mut().zip(WORDS) {

@@ -11,7 +11,7 @@ use endat_regs::{range, Protocol};
 /// The range of a channel's position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Range {
-    /// The configuration does not say; an EnDat encoder's name plate may.
+    /// The configuration does not define it; the name plate of an EnDat encoder may.
     #[default]
     Unknown,
     /// Turns and the angle within a turn.
@@ -40,7 +40,7 @@ const fn low(bits: u32) -> u64 {
 }
 
 impl Turns {
-    /// Turn, and steps within it: `1 << single_turn_bits` of them are a turn.
+    /// Turn, and steps within it; `1 << single_turn_bits` steps are a turn.
     pub const fn split(self, position: u64) -> (u64, u64) {
         let turn = match position.checked_shr(self.turns_at) {
             Some(upper) => upper & low(self.multi_turn_bits),
@@ -49,7 +49,7 @@ impl Turns {
         (turn, position & low(self.single_turn_bits))
     }
 
-    /// Steps from the begin of turn 0; it wraps with the turns.
+    /// Steps from the start of turn 0; wraps with the turns.
     pub const fn steps(self, position: u64) -> u64 {
         let (turn, step) = self.split(position);
         turn << self.single_turn_bits | step
@@ -61,15 +61,15 @@ impl Turns {
         signed(self.steps(to).wrapping_sub(self.steps(from)), width)
     }
 
-    /// Whether the bits between angle and turns are 0; if not, the encoder uses more than `single_turn_bits`.
+    /// True if the bits between angle and turns are 0; otherwise the encoder uses more than `single_turn_bits`.
     pub const fn fits(self, position: u64) -> bool {
         position & low(self.turns_at) == position & low(self.single_turn_bits)
     }
 }
 
 impl Range {
-    /// A range with `single_turn_bits` bits of angle and `multi_turn_bits` bits of turns, in a channel that speaks `protocol`; none if that
-    /// is more than its positions have.
+    /// A range with `single_turn_bits` bits of angle and `multi_turn_bits` bits of turns, in a channel with `protocol`; `None` if its positions
+    /// have fewer bits.
     pub const fn rotary(
         single_turn_bits: u32,
         multi_turn_bits: u32,
@@ -99,7 +99,7 @@ impl Range {
         let bits = field!(CHANNEL_CONFIG.frame.position_bits).of(frame);
         let turns = field!(CHANNEL_CONFIG.timing.multi_turn_bits).of(timing);
         let asked = field!(CHANNEL_CONFIG.timing.request_id).of(timing) as u8;
-        // Other requests bring no turns: those in a position are as old as the last that brought some.
+        // Other requests bring no turns: the turns in a position are from the last reply with turns.
         let requests = protocol.row().turns_with;
         let has_turns = requests.is_none_or(|all| all.contains(&asked));
         match kind {
@@ -115,7 +115,7 @@ impl Range {
         }
     }
 
-    /// The bits of turns and angle; none for a scale and for an unknown range.
+    /// The bits of turns and angle; `None` for a scale and for an unknown range.
     pub const fn turns(self) -> Option<Turns> {
         match self {
             Self::Rotary(turns) => Some(turns),
@@ -123,7 +123,7 @@ impl Range {
         }
     }
 
-    /// Steps from one position to another: the shorter way round, or along the scale; none for an unknown range.
+    /// Steps from one position to another: the shorter way round, or along the scale; `None` for an unknown range.
     pub const fn difference(self, from: u64, to: u64) -> Option<i64> {
         match self {
             Self::Rotary(turns) => Some(turns.difference(from, to)),

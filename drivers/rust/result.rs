@@ -1,4 +1,4 @@
-//! Results: what became of each channel's last trigger.
+//! Results of each channel's last trigger.
 
 use crate::facts::Facts;
 use crate::frame::crc5;
@@ -6,31 +6,31 @@ use crate::map::field;
 use endat_regs::causes::{self, endat};
 use endat_regs::{Field, Part, Protocol, Protocols, Values, BLOCK_STRIDE, CHANNELS_MAX, RESULT};
 
-/// Words of a result, those of additional data included.
+/// Words of a result, including additional data.
 pub const RESULT_WORDS: usize = RESULT.registers.len();
 /// Words of the longest burst that reads all results.
 pub const MOMENT_WORDS: usize = BLOCK_STRIDE as usize * CHANNELS_MAX;
 
-/// Where the raw flags are, from the first one on.
+/// Fields of the raw flags, lowest first.
 const FLAGS: [&Field; 2] = [field!(RESULT.evidence.flags), field!(RESULT.status.line)];
 
 /// A block of additional data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AdditionalData {
-    /// The frame brought it.
+    /// The frame included this block.
     pub came: bool,
-    /// Its CRC is right; content and status are 0 otherwise.
+    /// The CRC is right; otherwise content and status are 0.
     pub good: bool,
-    /// The frame was not over when its set was closed: it may have come since. Never in a result.
+    /// The frame was not over when its set was closed, so the block may have come since. Never set in a result.
     pub due: bool,
     /// WRN, RM, Busy, I4..I0.
     pub status: u8,
-    /// What it says.
+    /// Content.
     pub content: u16,
 }
 
 impl AdditionalData {
-    /// Out of 24 bits: status, content.
+    /// Decodes 24 bits: status, content.
     pub const fn new(word: u32, came: bool, good: bool, due: bool) -> Self {
         Self {
             came,
@@ -41,18 +41,18 @@ impl AdditionalData {
         }
     }
 
-    /// Out of its word of a result; 1 and 2 have the same fields.
+    /// Decodes its word of a result; 1 and 2 have the same fields.
     fn of_word(word: u32) -> Self {
         let came = field!(RESULT.info_1.came).of(word) != 0;
         Self::new(word, came, field!(RESULT.info_1.good).of(word) != 0, false)
     }
 
-    /// What it says, if it can be believed.
+    /// The block, if its CRC is right.
     pub fn good(self) -> Option<Self> {
         self.good.then_some(self)
     }
 
-    /// Which it is: I4..I0, the low bits of the MRS code that selects it.
+    /// Number of the content: I4..I0, the low bits of the MRS code that selects it.
     pub const fn number(self) -> u8 {
         field!(RESULT.info_1.sign).of((self.status as u32) << u16::BITS) as u8
     }
@@ -67,51 +67,51 @@ impl AdditionalData {
         field!(RESULT.info_1.reference_mark).of((self.status as u32) << u16::BITS) != 0
     }
 
-    /// WRN: one of the encoder's warnings is set.
+    /// WRN: a warning of the encoder is set.
     pub const fn has_warning(self) -> bool {
         field!(RESULT.info_1.warning).of((self.status as u32) << u16::BITS) != 0
     }
 }
 
-/// What became of a channel's last trigger.
+/// Result of a channel's last trigger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reading {
     /// Last good position; bit 0 is the LSB.
     pub position: u64,
-    /// Its width; 0: none yet, or T-format.
+    /// Width of the position; 0: no position yet, or T-format.
     pub width_bits: u32,
-    /// First falling clock edge of the frame that brought it; T-format: start bit of the request. System clock cycles, wrapping.
+    /// First falling clock edge of the frame that brought the position; T-format: start bit of the request. System clock cycles, wrapping.
     pub timestamp: u32,
     /// Number of results, wrapping.
     pub sequence: u16,
-    /// Age of the position; stops at 65535.
+    /// Age of the position in microseconds; stops at 65535.
     pub age_us: u16,
     /// Tracked line delay.
     pub delay_cycles: u16,
     /// Recovery time of the last frame.
     pub recovery_cycles: u16,
-    /// Bits of the last frame that are not position and that are shown, the last one in bit 0, where the protocol has such bits.
+    /// Shown special bits of the last frame, the last one in bit 0, if the protocol has special bits.
     pub special_bits: Option<u8>,
     /// Primary cause, a number of [`causes::ALL`]; 0 = none.
     pub cause: u8,
-    /// Everything that was wrong with the frame, a bit for each: see [`Self::flag_names`].
+    /// All faults of the frame, a bit for each: see [`Self::flag_names`].
     pub flags: u32,
-    /// There is a good position.
+    /// A good position is available.
     pub valid: bool,
-    /// The last result brought it: test this, not the cause.
+    /// The last result brought the position: test this, not the cause.
     pub fresh: bool,
     /// A trigger has come since this result.
     pub stale: bool,
-    /// The position as it was read fits the CRC that the encoder sent with it, or there is nothing to check.
+    /// The position as read matches the CRC sent by the encoder, or has none.
     pub fits: bool,
     /// CRC of the last frame, as received and as computed.
     pub crc: [u8; 2],
-    /// Additional data 1 and 2 of the same frame; none came on a card without requests.
+    /// Additional data 1 and 2 of the same frame; empty on a card without requests.
     pub infos: [AdditionalData; 2],
 }
 
 impl Reading {
-    /// Takes the words of a result apart, of a channel that speaks this protocol; those that are not there count as 0.
+    /// Decodes the words of a result in a channel with this protocol; missing words count as 0.
     pub fn new(words: &[u32], protocol: Protocol) -> Self {
         let word = |offset: usize| words.get(offset).copied().unwrap_or(0);
         let [status, low, high, timestamp, evidence, age, info_1, info_2] =
@@ -122,7 +122,7 @@ impl Reading {
         let width_bits = field!(RESULT.position_high.width).of(high);
         let delay_high = field!(RESULT.age_recovery.delay_high).of(age);
         let delay_low = field!(RESULT.evidence.delay_cycles);
-        // Special bits have the place of the upper flags.
+        // Special bits use the place of the upper flags.
         let has_special_bits = protocol.row().has_special_bits;
         let line = FLAGS[1].of(status);
         let upper_flags = if has_special_bits { 0 } else { line };
@@ -149,7 +149,7 @@ impl Reading {
         }
     }
 
-    /// The same if the position fits its CRC; otherwise without one: it was spoilt behind the check in the card.
+    /// The reading, without its position if that does not match its CRC: it was corrupted after the card's check.
     pub fn checked(self) -> Self {
         match self.fits {
             true => self,
@@ -162,7 +162,7 @@ impl Reading {
         }
     }
 
-    /// There has been a result since reset.
+    /// True if a result has come since reset.
     pub const fn has_come(&self) -> bool {
         self.sequence != 0 || self.valid || self.cause != 0
     }
@@ -172,7 +172,7 @@ impl Reading {
         causes::of(self.cause).map_or("unknown", |cause| cause.name)
     }
 
-    /// Names of all that was wrong with the frame, in a channel that speaks this protocol; the primary cause is one of them.
+    /// Names of all faults of the frame, in a channel with this protocol; the primary cause is one of them.
     pub fn flag_names(&self, protocol: Protocol) -> impl Iterator<Item = &'static str> {
         let [beside, above] = [self.flags, self.flags >> FLAGS[0].width];
         let fields = FLAGS.into_iter().zip([beside, above]);
@@ -186,18 +186,18 @@ impl Reading {
         })
     }
 
-    /// What the cause means.
+    /// Meaning of the cause.
     pub fn cause_meaning(&self) -> &'static str {
         causes::of(self.cause).map_or("unknown", |cause| cause.meaning)
     }
 
-    /// What to do about the cause.
+    /// Remedy for the cause.
     pub fn cause_remedy(&self) -> Option<&'static str> {
         causes::advice(causes::of(self.cause)?.name).map(|[_, remedy]| remedy)
     }
 }
 
-// The order of `Reading::new`.
+// The order in `Reading::new`.
 const _: () = {
     let names = [
         "status",
@@ -216,7 +216,7 @@ const _: () = {
     }
 };
 
-/// Whether a position fits the CRC that came with it, over F1 = 0, F2 = 1 if there was one, and the position, LSB first.
+/// True if a position matches the CRC received with it, over F1 = 0, F2 = 1 if it was sent, and the position, LSB first.
 fn fits(position: u64, high: u32) -> bool {
     let width = field!(RESULT.position_high.width).of(high);
     let error_bits = 1 + field!(RESULT.position_high.f2).of(high) as usize;
@@ -226,8 +226,8 @@ fn fits(position: u64, high: u32) -> bool {
         || position >> width == 0 && crc5(covered) == field!(RESULT.position_high.crc).of(high)
 }
 
-/// The results in the words from the first one on; those between two results count for nothing. `protocols`: what each
-/// channel speaks.
+/// Decodes the results in consecutive words from the first one on; words between two results are ignored. `protocols` has the protocol of each
+/// channel.
 pub fn readings(
     words: &[u32],
     has_infos: bool,
@@ -240,7 +240,7 @@ pub fn readings(
     })
 }
 
-/// Results of all channels, of one moment.
+/// Results of all channels, from one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moment {
     results: [Reading; CHANNELS_MAX],
@@ -248,7 +248,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Out of the words from the first result on of a card.
+    /// Decodes a card's words from the first result on.
     pub(crate) fn new(words: &[u32; MOMENT_WORDS], facts: &Facts) -> Self {
         let (channels, has_infos) = (facts.channels, facts.has(Part::Requests));
         let mut results = [Reading::default(); CHANNELS_MAX];
@@ -259,23 +259,23 @@ impl Moment {
         Self { results, channels }
     }
 
-    /// Triggers of other sources go on: results of triggers that came after this earlier moment are not stale.
+    /// Clears `stale` of results whose trigger came after this earlier moment; other trigger sources may continue.
     pub(crate) fn since(&mut self, before: &Self) {
         for (now, then) in self.results.iter_mut().zip(&before.results) {
-            // The first result after it may be that of a trigger before it.
+            // The first result after it may belong to a trigger before it.
             if now.sequence.wrapping_sub(then.sequence) > u16::from(then.stale) {
                 now.stale = false;
             }
         }
     }
 
-    /// One for each channel.
+    /// Results, by channel.
     pub fn results(&self) -> &[Reading] {
         &self.results[..self.channels]
     }
 }
 
-/// A position as a number around zero, in two's complement of its width; 0 if the width is 0, as of T-format: take the position itself.
+/// A position as a signed number, in two's complement of its width; 0 if the width is 0, as in T-format: use the position itself.
 pub const fn signed(position: u64, width_bits: u32) -> i64 {
     match width_bits {
         0 => 0,
@@ -284,7 +284,7 @@ pub const fn signed(position: u64, width_bits: u32) -> i64 {
     }
 }
 
-/// How far it is from one position to another, the shorter way round.
+/// Distance from one position to another, the shorter way round.
 pub const fn difference(from: u64, to: u64, width_bits: u32) -> i64 {
     signed(to.wrapping_sub(from), width_bits)
 }

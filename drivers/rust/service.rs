@@ -11,19 +11,19 @@ use endat_regs::protocol::ModeCommand;
 use endat_regs::service::word as at;
 use endat_regs::{Part, Protocol, SERVICE};
 
-/// Pause between two looks at an initialisation, and at a request.
+/// Pause between two polls of an initialisation, and of a request.
 const STATE_PAUSE_US: u32 = 500;
 pub(crate) const REQUEST_PAUSE_US: u32 = 50;
-/// No trigger is taken for so long behind an aborted frame.
+/// A channel ignores triggers for this time after an aborted frame.
 const ABORT_PAUSE_US: u32 = 30_000;
-/// From so many milliseconds on the microseconds of a duration have wrapped, or may have.
+/// From this number of milliseconds on the microseconds of a duration may have wrapped.
 const WRAPS_MS: u32 = 60;
 /// MRS codes that select additional data have these bits 7..5.
 const SELECTS: u8 = 0x40;
-/// With these bits they select none.
+/// With these bits they deselect them.
 const SELECTS_NONE: u8 = 0x0F;
 
-/// What a channel's service knows; all 0 on a card without requests.
+/// State of a channel's service; all 0 on a card without requests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct State {
     /// The name plate is valid.
@@ -32,27 +32,27 @@ pub struct State {
     pub alarm: bool,
     /// Position 2 was too far from position 1; latched.
     pub position_2: bool,
-    /// The encoder knows EnDat 2.2.
+    /// The encoder supports EnDat 2.2.
     pub endat22: bool,
-    /// The encoder has another width than configured; its own is used.
+    /// The encoder has another width than configured, which the card uses.
     pub other_width: bool,
-    /// The encoder takes only a slower clock than configured; that is used.
+    /// The encoder supports only a slower clock than configured, which the card uses.
     pub slower: bool,
     /// DATA has been HIGH for long.
     pub unplugged: bool,
-    /// Triggers are lost.
+    /// An initialisation is under way; triggers are lost.
     pub initialising: bool,
-    /// A forced error was not told; latched.
+    /// A forced error was not reported; latched.
     pub error_test: bool,
-    /// How often the service has begun: if it has changed, write its settings again.
+    /// Number of starts of the service: if it has changed, write its settings again.
     pub starts: u16,
 }
 
-/// A request that is under way.
+/// A request under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request {
     channel: usize,
-    /// Requests that had ended when it was sent.
+    /// Number of ended requests when it was sent.
     finished: u16,
 }
 
@@ -78,8 +78,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         })
     }
 
-    /// How a channel is: [`Error::Unplugged`], [`Error::Busy`] (it is being initialised) or [`Error::Initialisation`] if it takes no
-    /// triggers. On a card without requests the last result tells.
+    /// State of a channel: [`Error::Unplugged`], [`Error::Busy`] (initialisation under way) or [`Error::Initialisation`] if it accepts no
+    /// triggers. On a card without requests it is derived from the last result.
     pub fn status(&mut self, channel: usize) -> Result<(), Error<L::Error>> {
         self.needs_endat(channel)?;
         if !self.facts().has(Part::Requests) {
@@ -100,7 +100,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         if !state.initialised && self.facts().has(Part::Initialise) {
             let progress = self.link.read(word!(SERVICE.progress, channel))?;
             return match field!(SERVICE.progress.failed).of(progress) as u8 {
-                // None failed yet: it is about to begin.
+                // No step has failed yet: the initialisation is about to begin.
                 0 => Err(Error::Busy),
                 step => Err(Error::Initialisation { step }),
             };
@@ -108,8 +108,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(())
     }
 
-    /// Waits until a channel takes triggers: after power-up, and after its encoder has been plugged in again, which the card notices
-    /// itself. An initialisation takes some two seconds, twice that if a step fails. At the limit: [`Error::Unplugged`] or
+    /// Waits until a channel accepts triggers: after power-up, and after its encoder was plugged in again, which the card detects.
+    /// An initialisation takes some two seconds, twice that if a step fails. At the limit: [`Error::Unplugged`] or
     /// [`Error::Timeout`].
     pub fn wait_ready(&mut self, channel: usize, limit_ms: u32) -> Result<(), Error<L::Error>> {
         let mut wait = Wait::of_ms(limit_ms);
@@ -118,7 +118,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             let status = self.status(channel);
             was_away |= matches!(status, Err(Error::Unplugged));
             match status {
-                // The last look comes behind the last pause.
+                // The last poll comes after the last pause.
                 Err(Error::Busy | Error::Unplugged) if is_in_time => {
                     is_in_time = self.pause(&mut wait, STATE_PAUSE_US);
                 }
@@ -128,13 +128,13 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             }
         }
         if was_away && !self.facts().has(Part::Initialise) {
-            // An initialisation takes longer than the pause; without one nothing tells that triggers are lost.
+            // An initialisation takes longer than the pause; without one there is no flag for lost triggers.
             self.pause(&mut Wait::of_us(ABORT_PAUSE_US), ABORT_PAUSE_US);
         }
         Ok(())
     }
 
-    /// Writes the word control, whole: what was asked for before must not be done again.
+    /// Writes the whole word control, so that earlier actions are not repeated.
     fn control(&mut self, channel: usize, bits: u32) -> Result<(), Error<L::Error>> {
         self.needs_service(channel)?;
         self.link.write(word!(SERVICE.control, channel), bits)
@@ -147,7 +147,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.control(channel, field!(SERVICE.control.initialise).mask())
     }
 
-    /// Counters, alarm and the rest of what is latched go to zero.
+    /// Clears counters, alarm and other latched state.
     pub fn clear(&mut self, channel: usize) -> Result<(), Error<L::Error>> {
         self.control(channel, field!(SERVICE.control.clear).mask())
     }
@@ -164,7 +164,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.write_checked(word!(SERVICE.threshold, channel), word)
     }
 
-    /// A word of the name plate, as the initialisation read it (`endat_regs::service::NAME_PLATE` has the names); none if it was not read.
+    /// A word of the name plate, as the initialisation read it (`endat_regs::service::NAME_PLATE` has the names); `None` if it has not been read.
     pub fn read_plate(
         &mut self,
         channel: usize,
@@ -184,8 +184,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(is_read.then_some(field!(SERVICE.alarms.value).of(word) as u16))
     }
 
-    /// Sends a mode command with its parameter, and does not wait. EnDat 2.2 commands ride on the next
-    /// trigger. [`Error::Busy`] while an initialisation or another request is under way: nothing was sent.
+    /// Sends a mode command with its parameter, and does not wait. The next trigger sends EnDat 2.2
+    /// commands. [`Error::Busy`] while an initialisation or another request is under way: nothing was sent.
     pub fn request(
         &mut self,
         channel: usize,
@@ -214,11 +214,11 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         })
     }
 
-    /// What became of a request: [`Error::Busy`] until it has ended, [`Error::Refused`] if the encoder did not fulfil it.
+    /// State of a request: [`Error::Busy`] until it has ended, [`Error::Refused`] if the encoder rejected it.
     pub fn poll(&mut self, request: &Request) -> Result<Answer, Error<L::Error>> {
         let channel = request.channel;
         let state = self.link.read(word!(SERVICE.request_state, channel))?;
-        // "busy" may be 0 still in the first reads: only the number tells.
+        // "busy" may still be 0 in the first reads; only the number is reliable.
         let finished = field!(SERVICE.request_state.finished).of(state) as u16;
         match finished.wrapping_sub(request.finished) {
             0 => return Err(Error::Busy),
@@ -246,12 +246,12 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// Gives up the request that waits for a trigger; one on the wire is finished.
+    /// Cancels the request that waits for a trigger; one on the wire is finished.
     pub fn cancel(&mut self, channel: usize) -> Result<(), Error<L::Error>> {
         self.control(channel, field!(SERVICE.control.cancel).mask())
     }
 
-    /// Sends a mode command, and waits for the answer; at the limit it is cancelled.
+    /// Sends a mode command, and waits for the answer; cancels it at the limit.
     pub fn send(
         &mut self,
         channel: usize,
@@ -281,13 +281,13 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             }
         }
         if sent.is_some() {
-            // What it gives is of no use: the time-out is told in any case.
+            // Ignore its result: the call returns the time-out in any case.
             let _ = self.cancel(channel);
         }
         Err(Error::Timeout)
     }
 
-    /// Selects a memory area; the block is for areas that have several (0xBF), else 0.
+    /// Selects a memory area; the block applies to areas with several blocks (0xBF), else 0.
     pub fn select_memory(
         &mut self,
         channel: usize,
@@ -298,8 +298,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.send(channel, ModeCommand::SelectMemory, mrs, block, limit_ms)
     }
 
-    /// Reads a word of the encoder's memory; the limit is that of each of the two requests. Triggers that meet the frames of it are lost,
-    /// and told.
+    /// Reads a word of the encoder's memory; the limit applies to each of the two requests. Triggers during its frames are lost,
+    /// and reported as lost.
     pub fn read_parameter(
         &mut self,
         channel: usize,
@@ -311,7 +311,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.send(channel, ModeCommand::SendParameter, address, 0, limit_ms)
     }
 
-    /// Writes a word of the encoder's memory; the limit is that of each of the two requests.
+    /// Writes a word of the encoder's memory; the limit applies to each of the two requests.
     pub fn write_parameter(
         &mut self,
         channel: usize,
@@ -330,8 +330,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         )
     }
 
-    /// Additional data that are selected in turn, one in each triggered frame: their MRS codes, 0x40..0x4E and 0x50..0x5E, at most 8. With
-    /// none nothing more is selected, and what is selected goes on until a request with 0x4F or 0x5F.
+    /// Selects additional data in turn, one in each triggered frame: MRS codes 0x40..0x4E and 0x50..0x5E, at most 8. With an
+    /// empty list nothing more is selected, and the present selection remains until a request with 0x4F or 0x5F.
     pub fn select_additional_data(
         &mut self,
         channel: usize,
@@ -342,7 +342,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         if mrs.len() > usize::from(at::LIST_MAX) || !mrs.iter().all(is_one) {
             return Err(Error::Argument);
         }
-        // No code is selected while the list is half written.
+        // The list is inactive while it is being written.
         self.write_checked(word!(SERVICE.list_length, channel), 0)?;
         for (address, code) in (word!(SERVICE.list_0, channel)..).zip(mrs) {
             self.write_checked(address, u32::from(*code))?;
@@ -353,7 +353,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// What the n-th code of the list said last, and the number of the result that brought it: the difference to the result's `sequence`
+    /// Last content of the n-th code of the list, and the number of the result that brought it: the difference to the result's `sequence`
     /// is its age in frames.
     pub fn read_additional_data(
         &mut self,
@@ -372,7 +372,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     }
 }
 
-// The words of a list follow each other.
+// The words of a list are consecutive.
 const _: () = {
     let last = at::LIST_MAX as u16 - 1;
     assert!(SERVICE.word("list_7").offset - SERVICE.word("list_0").offset == last);

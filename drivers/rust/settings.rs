@@ -7,10 +7,10 @@ use crate::map::{field, word};
 use embedded_hal::delay::DelayNs;
 use endat_regs::{Field, Part, Protocol};
 
-/// Fewest system clocks in an EnDat clock, where DATA is not sampled on both edges.
+/// Fewest system clocks in an EnDat clock, if DATA is not sampled on both edges.
 const SINGLE_EDGE_PERIOD_MIN: u32 = 4;
 
-/// Settings of an EnDat channel, as the register map explains them.
+/// Settings of an EnDat channel; see the register map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
     /// EnDat clock period: [`Card::period_cycles`].
@@ -27,11 +27,11 @@ pub struct Settings {
     pub filter_cycles: u32,
     /// Longest wait for the start bit.
     pub start_timeout_us: u32,
-    /// DATA must fall within this after the frame.
+    /// DATA must fall within this time after the frame.
     pub recovery_limit_cycles: u32,
 }
 
-/// Where triggers come from.
+/// Trigger sources.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sources {
     /// Rising edges of the trigger pin.
@@ -42,15 +42,15 @@ pub struct Sources {
     pub register: bool,
 }
 
-/// The word of a channel that a setting stands in, and its field.
+/// Word of a channel with a setting, and its field.
 pub(crate) type Place = (usize, &'static Field);
 
-/// What the words hold at these places.
+/// Values of the words at these places.
 pub(crate) fn values_at<const N: usize>(places: [Place; N], words: [u32; 3]) -> [u32; N] {
     places.map(|(word, field)| field.of(words[word]))
 }
 
-/// The words with these values at their places; none if one is nothing that its field takes.
+/// The words with these values at their places; `None` if a field does not allow its value.
 pub(crate) fn put_at<const N: usize>(
     places: [Place; N],
     values: [u32; N],
@@ -66,7 +66,7 @@ pub(crate) fn put_at<const N: usize>(
     Some(words)
 }
 
-/// Where each setting stands.
+/// Place of each setting.
 fn places() -> [Place; 8] {
     [
         (0, field!(CHANNEL_CONFIG.frame.period_cycles)),
@@ -111,7 +111,7 @@ impl Settings {
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {
-    /// Clock period that is not faster than so many hertz.
+    /// Shortest clock period with a rate of at most `clock_hz`.
     pub const fn period_cycles(&self, clock_hz: u32) -> u32 {
         match clock_hz {
             0 => 0,
@@ -133,7 +133,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         ])
     }
 
-    /// Writes them, while no source triggers, and reads them back. What the map does not allow is refused, and nothing written.
+    /// Writes the settings while all trigger sources are disabled, and reads them back. Values that the map does not allow are rejected before writing.
     pub fn write_settings(
         &mut self,
         channel: usize,
@@ -151,11 +151,11 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let words = self.settings_words(channel)?;
         let words =
             put_at(places(), settings.values(), words, Protocol::Endat).ok_or(Error::Argument)?;
-        // A frame between two writes would run with half of the settings.
+        // A frame between two writes would use half of the settings.
         self.without_triggers(|card| card.write_settings_words(channel, words))
     }
 
-    /// Does something while no source triggers.
+    /// Executes an action while all trigger sources are disabled.
     pub(crate) fn without_triggers(
         &mut self,
         act: impl FnOnce(&mut Self) -> Result<(), Error<L::Error>>,
@@ -165,7 +165,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let disabled = field!(CARD_CONFIG.trigger_sources.disabled).mask();
         let stopped = self.write_checked(address, sources & disabled);
         let done = stopped.and_then(|()| act(self));
-        // After every error, too.
+        // Restore after every error, too.
         let given_back = self.put_back(address, sources);
         done.and(given_back)
     }
@@ -180,8 +180,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.write_checked(word!(CHANNEL_CONFIG.limits, channel), limits)
     }
 
-    /// Enables sources of triggers, and sets the period of the timer if one is given, while it stands. Behind an error the sources are
-    /// those of before, unless the link has failed for that, too.
+    /// Enables trigger sources, and sets the period of the timer, if given, while it is stopped. After an error the sources are
+    /// restored, unless the link has failed for that, too.
     pub fn set_triggers(
         &mut self,
         sources: Sources,
@@ -218,17 +218,17 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.put_back(address, fields.into_iter().fold(before, with))
     }
 
-    /// Which events make `irq_o` high: the word `interrupt.mask`.
+    /// Selects the events that assert `irq_o`: the word `interrupt.mask`.
     pub fn enable_interrupts(&mut self, events: u32) -> Result<(), Error<L::Error>> {
         self.needs(Part::Interrupt)?;
         self.write_checked(word!(INTERRUPT.mask), events)
     }
 
-    /// What has happened (the word `interrupt.status`), and clears just that: for an interrupt routine.
+    /// Reads the events (the word `interrupt.status`), and clears exactly these: for an interrupt routine.
     pub fn take_interrupts(&mut self) -> Result<u32, Error<L::Error>> {
         self.needs(Part::Interrupt)?;
         let events = self.link.read(word!(INTERRUPT.status))?;
-        // Only what has been seen: an event of this moment stays.
+        // Clear only the events that were read; new ones remain.
         if events != 0 {
             self.link.write(word!(INTERRUPT.clear), events)?;
         }

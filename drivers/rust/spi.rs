@@ -10,34 +10,34 @@ use endat_regs::WORD_BYTES;
 
 const WRITE: u8 = 2;
 const READ: u8 = 3;
-/// First byte of an answer: a card is there, and the last write was good, or was not.
+/// First byte of an answer: the last write was good, or was not.
 const GOOD: u8 = 0xA0;
 const BAD_WRITE: u8 = 0xA2;
 /// Bytes of command, address and number.
 const HEAD_BYTES: usize = 4;
-/// Where the words of an answer begin.
+/// Offset of the first word in an answer.
 const ANSWER_AT: usize = 5;
 const CRC_BYTES: usize = 2;
-/// What makes a check sum wrong, farther from the right one than any few wrong bits.
+/// Inverts a check sum, so that it differs from the right one in more bits than a disturbance.
 const ALL_WRONG: u16 = 0xFFFF;
 const BYTES: usize = ANSWER_AT + WORD_BYTES as usize * MOMENT_WORDS + CRC_BYTES;
 
-/// A card on SPI: mode 0, most significant bit first, at most an eighth of the system clock. Each frame has its check sum; a frame that
-/// was disturbed is sent again.
+/// A card on SPI: mode 0, most significant bit first, at most an eighth of the system clock. Each frame has a check sum; a disturbed
+/// frame is sent again.
 #[derive(Debug)]
 pub struct Spi<S> {
     device: S,
-    /// How often a frame goes out at most; 0 counts as 1.
+    /// Largest number of transmissions of a frame; 0 counts as 1.
     pub tries: u32,
-    /// `false`: a write takes four frames, and has arrived when it is told as done; a disturbed one goes out again, so that a trigger may
-    /// come twice. `true`: it is one frame, and nobody knows.
+    /// `false`: a write takes four frames and is confirmed; a disturbed one is sent again, so that a trigger may
+    /// occur twice. `true`: a write is one frame without confirmation.
     pub unconfirmed: bool,
-    /// Frames that had to go out again, for you to look at.
+    /// Number of repeated frames, for diagnosis.
     pub disturbed: u32,
 }
 
 impl<S: SpiDevice> Spi<S> {
-    /// The card on this device; a frame goes out up to three times.
+    /// The card on this device; a frame is sent up to three times.
     pub const fn new(device: S) -> Self {
         Self {
             device,
@@ -47,12 +47,12 @@ impl<S: SpiDevice> Spi<S> {
         }
     }
 
-    /// Gives the device back.
+    /// Returns the device.
     pub fn release(self) -> S {
         self.device
     }
 
-    /// Reads words once; the first byte of the answer.
+    /// Reads words once; returns the first byte of the answer.
     fn read_once(&mut self, word_address: u32, words: &mut [u32]) -> Result<u8, Error<S::Error>> {
         let count = u8::try_from(words.len()).ok().filter(|count| *count > 0);
         let address = u16::try_from(word_address).ok();
@@ -69,7 +69,7 @@ impl<S: SpiDevice> Spi<S> {
         let (answer, crc) = frame.split_at(crc_at);
         let sum = crc16(crc16(CRC16_START, &head), &answer[ANSWER_AT..]);
         if crc != sum.to_be_bytes() {
-            // Where there is no card, and in a wrong mode, the head is none either.
+            // Without a card, or in a wrong mode, the head is invalid, too.
             return Err(match answer[0] {
                 GOOD | BAD_WRITE => Error::CheckSum,
                 _ => Error::NoCard,
@@ -88,7 +88,7 @@ impl<S: SpiDevice> Spi<S> {
         self.tried(|spi| spi.read_once(word_address, words))
     }
 
-    /// Tries again what was disturbed.
+    /// Retries disturbed frames.
     fn tried<T>(
         &mut self,
         mut once: impl FnMut(&mut Self) -> Result<T, Error<S::Error>>,
@@ -107,7 +107,7 @@ impl<S: SpiDevice> Spi<S> {
         }
     }
 
-    /// How the last write went, from the head of a read that is good itself; asked twice, as the head has no check sum.
+    /// Result of the last write, from the head of a good read; read twice, because the head has no check sum.
     fn last_write(&mut self) -> Result<(), Error<S::Error>> {
         for _ in 0..=self.tries {
             let mut id = [0];
@@ -123,7 +123,7 @@ impl<S: SpiDevice> Spi<S> {
         Err(Error::NoCard)
     }
 
-    /// One write of a word, with its check sum or with a wrong one; what the card says of the write before.
+    /// One write of a word, with its check sum or with a wrong one; returns the result of the previous write.
     fn write_once(
         &mut self,
         word_address: u32,
@@ -153,8 +153,8 @@ impl<S: SpiDevice> Link for Spi<S> {
         Ok(word[0])
     }
 
-    /// A write whose command byte was disturbed is none, and the card has nothing to say of it. So one with a wrong check sum goes first,
-    /// which writes nothing: the card says "bad" until the good one has arrived.
+    /// The card does not detect a write whose command byte was disturbed. So a frame with a wrong check sum goes first,
+    /// which writes nothing: the card reports "bad" until the good write has arrived.
     fn write(&mut self, word_address: u32, value: u32) -> Result<(), Error<S::Error>> {
         if self.unconfirmed {
             return self.write_once(word_address, value, 0).map(drop);

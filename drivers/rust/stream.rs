@@ -1,4 +1,4 @@
-//! The stream of sample sets, taken word by word out of the card's buffer: over any bus.
+//! The stream of sample sets, read word by word from the card's buffer: over any bus.
 
 use crate::card::Card;
 use crate::error::Error;
@@ -19,47 +19,47 @@ pub const SET_BYTES: usize = HEAD_BYTES + (SAMPLE_BYTES + INFO_BYTES) * CHANNELS
 const TYPE_PLAIN: u8 = 1;
 const TYPE_INFOS: u8 = 2;
 const TYPE_RUN: u8 = 3;
-/// Bits of a sample's status: those of the upper half of `result.status`, and two that stand in free places.
+/// Bits of a sample's status: those of the upper half of `result.status`, and two in unused places.
 const STATUS_SHIFT: u32 = 16;
 const TAKEN: u16 = 0x0020;
 const MISSING: u16 = 0x8000;
 
-/// What has been read of a set.
+/// Received part of a set.
 #[derive(Clone, Debug)]
 pub struct Stream {
-    /// Encoded; one more than the longest set, as COBS adds one byte.
+    /// Encoded bytes; one more than the longest set, because COBS adds one byte.
     bytes: [u8; SET_BYTES + 1],
-    /// How many.
+    /// Number of bytes.
     count: usize,
-    /// What each channel speaks.
+    /// Protocol of each channel.
     protocols: Protocols,
-    /// Read, and not looked at.
+    /// Word read, not processed yet.
     word: u32,
-    /// Bytes of it.
+    /// Bytes left in it.
     left: u32,
 }
 
-/// A channel's share of a set.
+/// A channel's part of a set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sample {
-    /// Of this trigger if fresh.
+    /// Position; from this trigger if fresh.
     pub position: u64,
     /// Primary cause, a number of [`causes::ALL`].
     pub cause: u8,
     /// The channel took this trigger.
     pub taken: bool,
-    /// There is a good position.
+    /// A good position is available.
     pub valid: bool,
-    /// This trigger brought it.
+    /// This trigger brought the position.
     pub fresh: bool,
-    /// The set was closed before its result was there.
+    /// The set was closed before the channel's result.
     pub missing: bool,
 }
 
-/// What a trigger brought.
+/// Results of a trigger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Set {
-    /// Of a running clock: of one channel, and `sequence` is the number of its result.
+    /// A position of a running clock: one channel, and `sequence` is the number of its result.
     pub of_run: bool,
     /// Channel of the first sample.
     pub first: u8,
@@ -74,7 +74,7 @@ pub struct Set {
 }
 
 impl Set {
-    /// Of the channels from `first` on.
+    /// Samples of the channels from `first` on.
     pub fn samples(&self) -> &[Sample] {
         &self.samples[..usize::from(self.count)]
     }
@@ -91,7 +91,7 @@ impl Stream {
         }
     }
 
-    /// One more byte; a set if it was the last one of it.
+    /// Processes a byte; returns a set if it was the last byte.
     fn take(&mut self, byte: u8) -> Option<Result<Set, Damaged>> {
         if byte != 0 {
             let Some(place) = self.bytes.get_mut(self.count) else {
@@ -103,17 +103,17 @@ impl Stream {
             return None;
         }
         match core::mem::take(&mut self.count) {
-            // Nothing between two zeros.
+            // Empty frame between two zeros.
             0 => None,
             count => set_of(&mut self.bytes[..count], self.protocols).transpose(),
         }
     }
 }
 
-/// A set whose check sum is wrong, or whose length is none.
+/// A set with a wrong check sum or an invalid length.
 struct Damaged;
 
-/// COBS, in place; bytes that come out of it.
+/// Decodes COBS in place; returns the number of bytes.
 fn decode(bytes: &mut [u8]) -> Option<usize> {
     let (mut from, mut to) = (0, 0);
     while from < bytes.len() {
@@ -139,7 +139,7 @@ fn number(bytes: &[u8]) -> u64 {
     bytes.iter().rev().fold(0, with)
 }
 
-/// The set in these bytes; none if it is of a type of later cards.
+/// The set in these bytes; `None` for types of later cards.
 fn set_of(bytes: &mut [u8], protocols: Protocols) -> Result<Option<Set>, Damaged> {
     let length = decode(bytes).ok_or(Damaged)?;
     let bytes = &bytes[..length];
@@ -190,7 +190,7 @@ fn set_of(bytes: &mut [u8], protocols: Protocols) -> Result<Option<Set>, Damaged
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {
-    /// Empties the buffer, and lets triggers make sets, or not.
+    /// Empties the buffer, and sets whether triggers produce sets.
     pub fn start_stream(&mut self, collects: bool) -> Result<Stream, Error<L::Error>> {
         self.needs(Part::Stream)?;
         let control = word!(CARD.stream_control);
@@ -202,10 +202,10 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(Stream::new(self.facts().protocols))
     }
 
-    /// The next set; none if there is none yet, [`Error::Set`] for one that was damaged.
+    /// Reads the next set; `None` if none is available, [`Error::Set`] for a damaged one.
     pub fn next_set(&mut self, stream: &mut Stream) -> Result<Option<Set>, Error<L::Error>> {
         self.needs(Part::Stream)?;
-        // A longest set's bytes at most in one call: who reads more slowly than the card writes must come out of it, too.
+        // At most the bytes of the longest set in a call, so that it returns even if the card writes faster than the host reads.
         for _ in 0..SET_BYTES {
             while stream.left > 0 {
                 let [byte, ..] = stream.word.to_be_bytes();
@@ -221,7 +221,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             if field!(CARD.stream_state.bytes).of(state) == 0 {
                 return Ok(None);
             }
-            // Bytes that are not there are 0, which means nothing between two sets.
+            // Missing bytes read 0, which separates sets.
             stream.word = self.link.read(word!(CARD.stream_data))?;
             stream.left = WORD_BYTES;
         }

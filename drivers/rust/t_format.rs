@@ -1,4 +1,4 @@
-//! The port of a T-format encoder: requests beside the triggers, the encoder's EEPROM, settings.
+//! The port of a T-format encoder: requests in addition to triggers, the encoder's EEPROM, settings.
 
 use crate::card::{Card, Wait};
 use crate::error::Error;
@@ -11,41 +11,41 @@ use endat_regs::causes;
 use endat_regs::protocols::t_format::{self, request, RESETS_IN_A_ROW};
 use endat_regs::{Field, Protocol};
 
-/// An exchange is over after so long, whatever comes: the longest pauses that can be set, and all fields at the slowest bit.
+/// Upper limit of an exchange: the longest configurable pauses, and all fields at the slowest bit rate.
 const EXCHANGE_US: u32 = 2_000;
 
-/// What came back of a request.
+/// Reply to a request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reply {
-    /// An alarm that the encoder told in it, a number of [`causes::ALL`]: counting error, or multi-turn or battery; 0 = none.
+    /// Alarm reported in the reply, a number of [`causes::ALL`]: counting error, or multi-turn or battery; 0 = none.
     pub alarm: u8,
-    /// ID that it repeats.
+    /// ID echoed in the reply.
     pub id: u8,
-    /// EEPROM data as they came last.
+    /// EEPROM data, last received.
     pub data: u8,
 }
 
-/// Fields of the last reply, of a trigger or of a request, and which parts of the position there are.
+/// Fields of the last reply, to a trigger or a request, and the received parts of the position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fields {
-    /// Status field (SF); 0 if none came.
+    /// Status field (SF); 0 if none was received.
     pub status: u8,
-    /// Kind of encoder (ENID) as it came last.
+    /// Kind of encoder (ENID), last received.
     pub encoder_id: u8,
-    /// Alarm field (ALMC) as it came last.
+    /// Alarm field (ALMC), last received.
     pub alarm: u8,
     /// CRC as received.
     pub crc: u8,
-    /// A single-turn position has come since reset: bits 23..0 of a position.
+    /// A single-turn position was received since reset: bits 23..0 of a position.
     pub has_single_turn: bool,
-    /// A multi-turn position has come since reset: bits 47..24.
+    /// A multi-turn position was received since reset: bits 47..24.
     pub has_multi_turn: bool,
 }
 
-/// Settings of a T-format channel, as the register map explains them.
+/// Settings of a T-format channel; see the register map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TFormatSettings {
-    /// A bit: [`Card::period_cycles`].
+    /// Bit length: [`Card::period_cycles`].
     pub bit_cycles: u32,
     /// Request ID of a trigger, 0 to 3: `endat_regs::protocols::t_format::request`.
     pub request_id: u32,
@@ -57,7 +57,7 @@ pub struct TFormatSettings {
     pub field_gap_us: u32,
 }
 
-/// Where each setting stands.
+/// Place of each setting.
 fn places() -> [Place; 5] {
     [
         (0, field!(CHANNEL_CONFIG.frame.period_cycles)),
@@ -92,20 +92,20 @@ impl TFormatSettings {
     }
 }
 
-/// These clear something.
+/// Requests that clear something.
 const RESETS: [u8; 3] = [
     request::CLEAR_ERRORS,
     request::CLEAR_SINGLE_TURN,
     request::CLEAR_MULTI_TURN,
 ];
-/// What a trigger may ask for: neither the EEPROM, nor to clear something.
+/// Requests of a trigger: without EEPROM access, and without clearing.
 const OF_TRIGGERS: [u8; 4] = [
     request::SINGLE_TURN,
     request::MULTI_TURN,
     request::ENCODER_ID,
     request::EVERYTHING,
 ];
-/// These come with a good reply.
+/// Causes that come with a good reply.
 const ALARMS: [u8; 2] = [
     causes::number(t_format::causes::COUNTING_ERROR as u8, Protocol::TFormat),
     causes::number(t_format::causes::MULTI_TURN_ALARM as u8, Protocol::TFormat),
@@ -113,12 +113,12 @@ const ALARMS: [u8; 2] = [
 const BUSY: &Field = field!(T_FORMAT.answer.busy);
 const DONE: &Field = field!(T_FORMAT.answer.done);
 
-/// The ID that the reply repeats.
+/// ID echoed in the reply.
 fn repeats(answer: u32) -> u8 {
     field!(T_FORMAT.answer.id).of(answer) as u8
 }
 
-/// A request as it is written; none if it does not fit.
+/// A request word; `None` if a value does not fit.
 fn request_word([id, address, data]: [u8; 3]) -> Option<u32> {
     let word = field!(T_FORMAT.send.id).put(0, id.into())?;
     let word = field!(T_FORMAT.send.address).put(word, address.into())?;
@@ -126,11 +126,11 @@ fn request_word([id, address, data]: [u8; 3]) -> Option<u32> {
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {
-    /// Sends a request of its own, at once or behind the exchange under way, and waits for the reply. The address and the data are those
-    /// of the EEPROM's requests. A trigger that falls into it is not taken, and the next result says so. The limit is for what is under
-    /// way before it; the exchange itself takes less than 2 ms, and is waited for.
+    /// Sends a request in a separate exchange, at once or after the exchange under way, and waits for the reply. Address and data apply to
+    /// EEPROM requests. A trigger during the exchange is lost, and the next result reports it. The limit applies to an exchange under
+    /// way before it; the exchange itself takes less than 2 ms, which is always waited for.
     ///
-    /// [`Error::Exchange`] if it failed; a request that did not reach the card goes out again, and is [`Error::Timeout`] at the limit.
+    /// [`Error::Exchange`] if it failed. A request that did not reach the card is sent again; at the limit [`Error::Timeout`].
     pub fn exchange(
         &mut self,
         channel: usize,
@@ -152,7 +152,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let word = request_word(request).ok_or(Error::Argument)?;
         let id = request[0];
         let before = self.answer_when(channel, wait, |answer| BUSY.of(answer) == 0)?;
-        // A write that is lost leaves the answer of before: another ID between tells. Resets count in a row only.
+        // After a lost write the previous answer remains; another ID in between distinguishes it. Resets must be consecutive.
         if DONE.of(before) != 0 && repeats(before) == id && !RESETS.contains(&id) {
             let other = match id {
                 request::ENCODER_ID => request::SINGLE_TURN,
@@ -176,7 +176,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
                     data: field!(T_FORMAT.answer.data).of(answer) as u8,
                 });
             }
-            // It is the answer of before.
+            // The answer belongs to the previous request.
             if !is_in_time {
                 return Err(Error::Timeout);
             }
@@ -184,7 +184,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// Sends a request that nobody is before, and waits for the end of the exchange; the answer.
+    /// Sends a request when none is pending, and waits for the end of the exchange; returns the answer.
     fn exchange_once(&mut self, channel: usize, word: u32) -> Result<u32, Error<L::Error>> {
         self.link.write(word!(T_FORMAT.send, channel), word)?;
         let mut wait = Wait::of_us(EXCHANGE_US);
@@ -202,14 +202,14 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             let answer = self.link.read(word!(T_FORMAT.answer, channel))?;
             match is_so(answer) {
                 true => return Ok(answer),
-                // The last look comes behind the last pause.
+                // The last poll comes after the last pause.
                 false if is_in_time => is_in_time = self.pause(wait, REQUEST_PAUSE_US),
                 false => return Err(Error::Timeout),
             }
         }
     }
 
-    /// An exchange with the EEPROM, when it is no longer busy with what was written before.
+    /// An exchange with the EEPROM, after the end of an earlier write.
     fn eeprom(
         &mut self,
         channel: usize,
@@ -229,7 +229,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// Reads a byte of the EEPROM; address 127 is the page register. [`Error::Busy`] if it is still writing at the limit.
+    /// Reads a byte of the EEPROM; address 127 is the page register. [`Error::Busy`] if the EEPROM is still writing at the limit.
     pub fn read_eeprom(
         &mut self,
         channel: usize,
@@ -241,8 +241,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.eeprom(channel, request, &mut Wait::of_ms(limit_ms))
     }
 
-    /// Writes a byte of the EEPROM, and reads it back when it is there; address 127 is the page register. [`Error::Busy`]: it was still
-    /// writing at the limit, and what it reads as then is not known; [`Error::ReadBack`]: it has another byte.
+    /// Writes a byte of the EEPROM, and reads it back after the write; address 127 is the page register. [`Error::Busy`]: the EEPROM was still
+    /// writing at the limit, and its content is undefined; [`Error::ReadBack`]: it holds another byte.
     pub fn write_eeprom(
         &mut self,
         channel: usize,
@@ -259,9 +259,9 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
     }
 
-    /// Clears errors, angle or turns of the encoder: one of the requests that count only several times in a row, so no source triggers
-    /// meanwhile. [`Error::Exchange`] if one of them failed, or an alarm is still there behind them. What it has done is seen in the next
-    /// position: a link without a check may have lost one of them.
+    /// Clears errors, angle or turns of the encoder. The encoder needs several such requests in a row, so all trigger sources are disabled
+    /// meanwhile. [`Error::Exchange`] if a request failed, or an alarm remains after them. Check the effect in the next
+    /// position: a link without check sum may have lost a request.
     pub fn reset_encoder(
         &mut self,
         channel: usize,
@@ -283,7 +283,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         })
     }
 
-    /// Fields of the last reply, and which parts of the position there are.
+    /// Reads the fields of the last reply, and the received parts of the position.
     pub fn read_fields(&mut self, channel: usize) -> Result<Fields, Error<L::Error>> {
         self.needs_protocol(channel, Protocol::TFormat)?;
         let word = self.link.read(word!(T_FORMAT.fields, channel))?;
@@ -307,8 +307,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(TFormatSettings::of(self.settings_words(channel)?))
     }
 
-    /// Writes them, while no source triggers, and reads them back. What the map does not allow is refused, and nothing written; so are
-    /// requests of a trigger that bring no position or kind, and a filter of half a bit or more.
+    /// Writes the settings while all trigger sources are disabled, and reads them back. Values that the map does not allow are rejected before writing; so are
+    /// trigger requests without position or kind, and a filter of half a bit or more.
     pub fn write_t_format_settings(
         &mut self,
         channel: usize,
@@ -318,7 +318,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let is_request = OF_TRIGGERS
             .iter()
             .any(|id| u32::from(*id) == settings.request_id);
-        // A filter of half a bit leaves nothing of it.
+        // A filter of half a bit removes all bits.
         let is_short = 2 * u64::from(settings.filter_cycles) < settings.bit_cycles.into();
         if !(is_request && is_short) {
             return Err(Error::Argument);

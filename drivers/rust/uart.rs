@@ -8,30 +8,30 @@ const READ: u8 = 2;
 
 /// Bytes of a UART: 8N1.
 pub trait Serial {
-    /// What it says when it fails, or when nothing comes in time.
+    /// Error, also for missing bytes.
     type Error;
 
-    /// Sends all of them.
+    /// Sends all bytes.
     fn send(&mut self, bytes: &[u8]) -> Result<(), Self::Error>;
 
-    /// Receives all of them, or ends in time.
+    /// Receives all bytes, or times out.
     fn receive(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error>;
 }
 
-/// A card on a UART. The format has no check sum; the stream is read, not pushed. After an error of the link wait 100 ms: the card has
-/// forgotten the command then.
+/// A card on a UART. The format has no check sum; the stream is read, not pushed. After an error of the link wait 100 ms, until the card
+/// has dropped the command.
 #[derive(Debug)]
 pub struct Uart<S> {
     serial: S,
 }
 
 impl<S: Serial> Uart<S> {
-    /// The card behind this UART.
+    /// The card at this UART.
     pub const fn new(serial: S) -> Self {
         Self { serial }
     }
 
-    /// Gives the UART back.
+    /// Returns the UART.
     pub fn release(self) -> S {
         self.serial
     }

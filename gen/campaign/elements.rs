@@ -112,14 +112,14 @@ pub fn table(tally: &Tally) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::part::Part;
+    use crate::part::Part;
     use std::path::Path;
 
     /// Catches a block that is new and in no element, or in a wrong one.
     #[test]
     fn every_block_is_in_an_element() {
         let read = |name: &str| {
-            let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/results");
+            let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../campaigns/results");
             Part::read(&file.join(name)).unwrap().tally
         };
         for (file, subject) in [

@@ -2,8 +2,10 @@
 //!
 //! Counts only add up, so parts put together are byte for byte what one run writes.
 
-use crate::error::{shown, GenError};
+use endat_console::error::{shown, CommandError};
+use endat_sim::campaign::{count, run_shard, Campaign};
 use endat_sim::campaign::{Row, Shard, Tally};
+use endat_terminal::work::progress;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -38,10 +40,35 @@ const COLUMNS: [&str; 10] = [
 pub const PARTS_MAX: u64 = 1_000_000;
 
 impl Part {
+    /// Runs a part of a campaign.
+    pub fn run(
+        name: &str,
+        plan: String,
+        campaign: &dyn Campaign,
+        shard: Shard,
+        threads: usize,
+    ) -> Self {
+        let all = count(campaign);
+        let cases = shard.cases(all);
+        let cases = cases.end - cases.start;
+        let show = progress(cases.max(1) as usize, "cases");
+        let tally = run_shard(campaign, shard, threads, |done| show(done as usize));
+        Self {
+            identity: Identity {
+                campaign: name.into(),
+                version: format!("{}-{:016x}", env!("CARGO_PKG_VERSION"), campaign.digest()),
+                plan,
+                cases: all,
+            },
+            shard,
+            tally,
+        }
+    }
+
     /// As CSV.
-    pub fn to_csv(&self) -> Result<String, GenError> {
+    pub fn to_csv(&self) -> Result<String, CommandError> {
         let mut writer = csv::Writer::from_writer(vec![]);
-        let fault = |e: &dyn std::fmt::Display| GenError::input(format!("CSV: {e}"));
+        let fault = |e: &dyn std::fmt::Display| CommandError::input(format!("CSV: {e}"));
         writer.write_record(COLUMNS).map_err(|e| fault(&e))?;
         let (cases, part) = (self.identity.cases.to_string(), self.shard.to_string());
         let ran = self.shard.cases(self.identity.cases);
@@ -80,9 +107,9 @@ impl Part {
     }
 
     /// Reads one; `name` is what messages call it.
-    pub fn from_csv(name: &str, text: &str) -> Result<Self, GenError> {
+    pub fn from_csv(name: &str, text: &str) -> Result<Self, CommandError> {
         let wrong = |line: usize, what: &str| {
-            GenError::input(format!(
+            CommandError::input(format!(
                 "{name}:{line}: {what}; give files that campaign --out has written"
             ))
         };
@@ -146,14 +173,15 @@ impl Part {
     }
 
     /// Reads a file.
-    pub fn read(path: &Path) -> Result<Self, GenError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| GenError::io("read", path, &e, "give a part that --out has written"))?;
+    pub fn read(path: &Path) -> Result<Self, CommandError> {
+        let text = std::fs::read_to_string(path).map_err(|e| {
+            CommandError::io("read", path, &e, "give a part that --out has written")
+        })?;
         Self::from_csv(&path.display().to_string(), &text)
     }
 
     /// Writes a file: whole, or not at all.
-    pub fn write(&self, path: &Path) -> Result<(), GenError> {
+    pub fn write(&self, path: &Path) -> Result<(), CommandError> {
         let text = self.to_csv()?;
         let mut scratch = path.as_os_str().to_owned();
         scratch.push(".tmp");
@@ -161,7 +189,7 @@ impl Part {
         let written = std::fs::write(scratch, text).and_then(|()| std::fs::rename(scratch, path));
         written.map_err(|e| {
             let _ = std::fs::remove_file(scratch);
-            GenError::io(
+            CommandError::io(
                 "write",
                 path,
                 &e,
@@ -192,9 +220,9 @@ pub fn shard(text: &str) -> Result<Shard, String> {
 }
 
 /// Puts all parts of one campaign together; the names are for messages.
-pub fn merge(parts: Vec<(String, Part)>) -> Result<Part, GenError> {
+pub fn merge(parts: Vec<(String, Part)>) -> Result<Part, CommandError> {
     let Some((first_name, first)) = parts.first().cloned() else {
-        return Err(GenError::input(
+        return Err(CommandError::input(
             "merge: there are no parts, at least one is needed; name the files that --out has written",
         ));
     };
@@ -217,12 +245,12 @@ pub fn merge(parts: Vec<(String, Part)>) -> Result<Part, GenError> {
         .find(|(_, a, b)| a != b)
         .map(|(what, a, b)| (what, a.clone(), b.clone()));
         if let Some((what, a, b)) = differs {
-            return Err(GenError::input(format!(
+            return Err(CommandError::input(format!(
                 "{name}: {what} = {b}: is not of the same campaign as {first_name}, which has {a}; merge parts of one run"
             )));
         }
         if let Some(other) = seen.insert(part.shard.index, name.clone()) {
-            return Err(GenError::input(format!(
+            return Err(CommandError::input(format!(
                 "{name}: part = {}: is in {other} already, each may be there once; leave one of them out",
                 part.shard
             )));
@@ -235,7 +263,7 @@ pub fn merge(parts: Vec<(String, Part)>) -> Result<Part, GenError> {
         .map(|index| format!("{index}/{}", first.shard.of))
         .collect();
     if !missing.is_empty() {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "merge: {} of {} parts: not there: {}; run them alone, with --shard",
             seen.len(),
             first.shard.of,

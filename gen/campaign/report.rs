@@ -9,7 +9,7 @@ use std::fmt::Write;
 const WORST: usize = 20;
 
 /// Cases by class.
-pub(super) type Counts<'a> = BTreeMap<&'a str, u64>;
+pub type Counts<'a> = BTreeMap<&'a str, u64>;
 
 /// The block that a register is in.
 pub(super) fn block(place: &str) -> &str {
@@ -25,7 +25,7 @@ pub(super) fn flips(counts: &Counts) -> u64 {
 }
 
 /// The counts of every group of rows.
-pub(super) fn grouped<'a, K: Ord>(
+pub fn grouped<'a, K: Ord>(
     tally: &'a Tally,
     key: impl Fn(&'a Row) -> K,
 ) -> BTreeMap<K, Counts<'a>> {

@@ -2,9 +2,9 @@
 
 use super::work::Steps;
 use super::{to_json, Outcome};
-use crate::area;
-use crate::error::GenError;
 use clap::Args;
+use endat_console::error::CommandError;
+use endat_tools::area;
 use std::path::PathBuf;
 
 /// Arguments of `area`.
@@ -28,7 +28,7 @@ pub struct AreaArgs {
 }
 
 /// Runs the command.
-pub fn run(arguments: &AreaArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &AreaArgs) -> Result<Outcome, CommandError> {
     let steps = Steps::new(None);
     let scope = area::Scope {
         only: &arguments.only,

@@ -3,13 +3,15 @@
 use super::colour;
 use super::work::Steps;
 use super::{to_json, EmissionArgs, Outcome};
-use crate::artifact::{self, Artifact};
-use crate::bitstream::{self, Effort, Maker};
-use crate::board::Board;
-use crate::config::{Configuration, Project, RECEIVER_BUS};
-use crate::error::GenError;
-use crate::language::Language;
 use clap::Args;
+use endat_config::board::Board;
+use endat_config::{Configuration, Project, RECEIVER_BUS};
+use endat_console::artifact::{self, Artifact};
+use endat_console::error::CommandError;
+use endat_emit::language::Language;
+use endat_emit::making::{file_name, Maker};
+use endat_emit::with::emit_with;
+use endat_tools::bitstream::{self, Effort};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `build`.
@@ -20,7 +22,7 @@ pub struct BuildArgs {
     #[command(flatten)]
     emission: EmissionArgs,
     /// Seeds of the placer that are tried, one after another, until timing is met
-    #[arg(long, value_name = "N", default_value = "5", value_parser = crate::number::parser(1, 1000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "5", value_parser = endat_console::number::parser(1, 1000), allow_negative_numbers = true)]
     seeds: u32,
     /// With the vendor's tool, also where open tools know the board
     #[arg(long)]
@@ -48,15 +50,15 @@ pub struct FlashArgs {
 }
 
 /// Prints the command that loads a bitstream that has been built.
-pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
+pub fn flash(arguments: &FlashArgs) -> Result<Outcome, CommandError> {
     let (project, board, folder) = on_board(&arguments.emission)?;
     let language = arguments.emission.language()?;
     // Open tools read Verilog.
     let maker = Maker::of(&board, language == Language::Vhdl)?;
-    let name = bitstream::file_name(&project, &board, maker)?;
+    let name = file_name(&project, &board, maker)?;
     let path = folder.join(&name);
     let Some(command) = bitstream::loading(&board, &path, arguments.write_flash) else {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "board = {}: its file does not say how openFPGALoader calls it; add loader = \"...\" (`openFPGALoader --list-boards`), or load the file with the vendor's program",
             board.name
         )));
@@ -68,21 +70,39 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
     let make = format!("make it: the same command with `{build}` instead of `flash`");
     let is_there = std::fs::metadata(&path).is_ok_and(|file| file.is_file() && file.len() > 0);
     if !is_there {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "{}: is not there; {make}",
             path.display()
         )));
     }
-    be_of(&path, &folder, &crate::emit_in(&project, language)?, &make)?;
+    be_of(&path, &folder, &emit_card(&project, language)?, &make)?;
     bitstream::report_of(&project, &board, &folder, &name)?;
     Ok(Outcome::good(command + "\n"))
 }
 
+/// The files of a card, with the extras of its configuration.
+fn emit_card(project: &Project, language: Language) -> Result<Vec<Artifact>, CommandError> {
+    let card = Configuration::Card(Box::new(project.clone()));
+    emit_with(&card, language, &project.with)
+}
+
 /// An error if what is beside a file, which says what it was built of, is another emission.
-fn be_of(path: &Path, folder: &Path, artifacts: &[Artifact], remedy: &str) -> Result<(), GenError> {
-    match artifact::differences(folder, artifacts).first() {
+fn be_of(
+    path: &Path,
+    folder: &Path,
+    artifacts: &[Artifact],
+    remedy: &str,
+) -> Result<(), CommandError> {
+    // Files that `emit --with` adds, and the two that list them, make no other bitstream.
+    let lists = [artifact::MANIFEST, artifact::README].map(|name| folder.join(name));
+    let is_other = |text: &String| {
+        let is_of_list = |file: &PathBuf| text.starts_with(&format!("{}:", file.display()));
+        !lists.iter().any(is_of_list) && !text.contains("is no longer emitted")
+    };
+    let mut differences = artifact::differences(folder, artifacts).into_iter();
+    match differences.find(is_other) {
         None => Ok(()),
-        Some(other) => Err(GenError::input(format!(
+        Some(other) => Err(CommandError::input(format!(
             "{}: is of another configuration, board, version or --language ({other}); {remedy}",
             path.display()
         ))),
@@ -90,24 +110,24 @@ fn be_of(path: &Path, folder: &Path, artifacts: &[Artifact], remedy: &str) -> Re
 }
 
 /// The card that is meant, its board, and the folder of its files.
-fn on_board(emission: &EmissionArgs) -> Result<(Project, Board, PathBuf), GenError> {
+fn on_board(emission: &EmissionArgs) -> Result<(Project, Board, PathBuf), CommandError> {
     let (configuration, folder) = emission.load()?;
     let project = match configuration {
         Configuration::Card(project) => *project,
         Configuration::Receiver(_) => {
-            return Err(GenError::input(format!(
+            return Err(CommandError::input(format!(
                 "host.bus = \"{RECEIVER_BUS}\": is a T-format receiver, which has no board top; choose a card's bus"
             )))
         }
     };
     if project.bus.is_internal() {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "host.bus = \"{}\": stays inside the chip, so this card is a part of a bitstream of yours; choose \"uart\", \"spi\" or \"parallel\"",
             project.bus.name()
         )));
     }
     let Some(board) = project.board.clone() else {
-        return Err(GenError::input(
+        return Err(CommandError::input(
             "board: the configuration names none, and a bitstream is for a board; add [board], or --board NAME",
         ));
     };
@@ -115,13 +135,13 @@ fn on_board(emission: &EmissionArgs) -> Result<(Project, Board, PathBuf), GenErr
 }
 
 /// Runs the command.
-pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &BuildArgs) -> Result<Outcome, CommandError> {
     let (project, board, folder) = on_board(&arguments.emission)?;
     let maker = Maker::of(&board, arguments.vendor || arguments.read)?;
     let way_back = match (maker, arguments.simulate) {
         (Maker::Open(build), true) => Some(bitstream::way_back(&project, &board, build)?),
         (Maker::Vendor(vendor), true) => {
-            return Err(GenError::input(format!(
+            return Err(CommandError::input(format!(
                 "--simulate: {} makes this bitstream, and it cannot be read back; leave it out",
                 vendor.tool
             )))
@@ -134,20 +154,20 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
             Some(_) => ", or take the vendor's tool with --vendor",
             None => "",
         };
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "--language = vhdl: open tools read Verilog; leave it out{vendor}"
         )));
     }
-    let artifacts = crate::emit_in(&project, language)?;
-    let bitstream = bitstream::file_name(&project, &board, maker)?;
+    let artifacts = emit_card(&project, language)?;
+    let bitstream = file_name(&project, &board, maker)?;
     if artifacts.iter().any(|a| a.path == bitstream) {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "bitstream = {bitstream:?}: is a file of the emission; give it another name in the family's file"
         )));
     }
     let foreign = artifact::foreign(&folder, &artifacts);
     if !foreign.is_empty() {
-        return Err(GenError::Input(foreign));
+        return Err(CommandError::Input(foreign));
     }
     let remedy = "give another folder with --out";
     if arguments.read {
@@ -179,8 +199,8 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     if !arguments.read {
         let (name, text) = bitstream::report_file(&project, &report, &bytes);
         let about = folder.join(name);
-        std::fs::write(&about, text).map_err(|e| GenError::io("write", &about, &e, remedy))?;
-        std::fs::write(&path, bytes).map_err(|e| GenError::io("write", &path, &e, remedy))?;
+        std::fs::write(&about, text).map_err(|e| CommandError::io("write", &about, &e, remedy))?;
+        std::fs::write(&path, bytes).map_err(|e| CommandError::io("write", &path, &e, remedy))?;
     }
     report.load = bitstream::loading(&board, &path, false);
     report.bitstream = path.display().to_string();

@@ -2,9 +2,9 @@
 
 use super::{to_json, Outcome};
 use crate::crc::{self, CoveredBit};
-use crate::error::{shown, GenError};
-use crate::number::number;
 use clap::Args;
+use endat_console::error::{shown, CommandError};
+use endat_console::number::number;
 use endat_hdl::protocol::POSITION_BITS;
 
 /// Arguments of `crc`.
@@ -57,7 +57,7 @@ pub struct CrcArgs {
     json: bool,
 }
 
-fn fields(arguments: &CrcArgs) -> Result<Vec<CoveredBit>, GenError> {
+fn fields(arguments: &CrcArgs) -> Result<Vec<CoveredBit>, CommandError> {
     let text =
         |value: &Option<String>, default: &str| value.clone().unwrap_or_else(|| default.into());
     let bits = text(&arguments.bits, "0");
@@ -67,7 +67,7 @@ fn fields(arguments: &CrcArgs) -> Result<Vec<CoveredBit>, GenError> {
     let position = number("--position", &position, 0..=(1 << width) - 1).map_err(|error| {
         let messages = error.messages().iter();
         let told = messages.map(|m| format!("{m}; --bits is {width}"));
-        GenError::Input(told.collect())
+        CommandError::Input(told.collect())
     })?;
     let f1 = number("--f1", &text(&arguments.f1, "0"), 0..=1)? as u8;
     let f2 = arguments
@@ -83,13 +83,13 @@ fn fields(arguments: &CrcArgs) -> Result<Vec<CoveredBit>, GenError> {
     ))
 }
 
-fn raw(text: &str) -> Result<Vec<CoveredBit>, GenError> {
+fn raw(text: &str) -> Result<Vec<CoveredBit>, CommandError> {
     let digits: Vec<char> = text.chars().filter(|c| !matches!(c, '_' | ' ')).collect();
     if let Some(bad) = digits.iter().find(|c| !matches!(c, '0' | '1')) {
-        return Err(GenError::input(format!("--raw = {}: has the character {bad:?}; write only 0 and 1, first transmitted bit first", shown(text))));
+        return Err(CommandError::input(format!("--raw = {}: has the character {bad:?}; write only 0 and 1, first transmitted bit first", shown(text))));
     }
     if digits.is_empty() || digits.len() > crc::BITS_MAX {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "--raw = {}: has {} bits, outside 1..{}; give the covered bits of one block",
             shown(text),
             digits.len(),
@@ -105,7 +105,7 @@ fn raw(text: &str) -> Result<Vec<CoveredBit>, GenError> {
 }
 
 /// Runs the command.
-pub fn run(arguments: &CrcArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &CrcArgs) -> Result<Outcome, CommandError> {
     let bits = match &arguments.raw {
         Some(text) => raw(text)?,
         None => fields(arguments)?,

@@ -1,9 +1,9 @@
 //! `doctor`: which programs of others are there, and what those are for that are not.
 
 use super::{colour, to_json, Outcome};
-use crate::error::GenError;
-use crate::tools::{version, TOOLS};
 use clap::Args;
+use endat_console::error::CommandError;
+use endat_tools::programs::{version, TOOLS};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -16,7 +16,7 @@ pub struct DoctorArgs {
 }
 
 /// Runs the command.
-pub fn run(arguments: &DoctorArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &DoctorArgs) -> Result<Outcome, CommandError> {
     let found: Vec<_> = TOOLS.iter().map(|tool| (tool, version(tool))).collect();
     if arguments.json {
         let all = found.iter().map(|(tool, version)| {

@@ -1,12 +1,13 @@
 //! `emit`: writes the files of a card, or checks them.
 
-use super::host::interrupted;
 use super::{to_json, EmissionArgs, Outcome};
-use crate::artifact::{self, Artifact};
-use crate::config::Configuration;
-use crate::error::GenError;
 use clap::Args;
-use endat_hdl::card::bus::HostBus;
+use endat_config::extras::{named, DRIVER};
+use endat_config::Configuration;
+use endat_console::artifact;
+use endat_console::error::CommandError;
+use endat_emit::with::emit_with;
+use endat_terminal::work::{interrupted, say};
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -16,8 +17,11 @@ use std::sync::atomic::Ordering;
 pub struct EmitArgs {
     #[command(flatten)]
     emission: EmissionArgs,
-    /// Write the C driver, too: C99 for any bus of a card, see docs/driver.md
-    #[arg(long)]
+    /// Files besides those of the card, as `endat-gen explain with` lists them; adds to the key `with` of the configuration
+    #[arg(long, value_name = "EXTRA", value_delimiter = ',')]
+    with: Vec<String>,
+    /// Old spelling of --with driver
+    #[arg(long, hide = true)]
     driver: bool,
     /// Overwrite files that have been changed, or that were not written by this command
     #[arg(long, conflicts_with = "check")]
@@ -30,19 +34,29 @@ pub struct EmitArgs {
     json: bool,
 }
 
+impl EmitArgs {
+    /// What the command line asks for besides the card.
+    fn asked(&self) -> Vec<String> {
+        let old = self.driver.then(|| DRIVER.to_owned());
+        self.with.iter().cloned().chain(old).collect()
+    }
+
+    /// What is asked for besides the card: there, and in the configuration.
+    fn with(&self, configuration: &Configuration) -> Result<Vec<String>, CommandError> {
+        let asked = named(&self.asked())?;
+        Ok([configuration.with(), &asked].concat())
+    }
+}
+
 /// Runs the command.
-pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &EmitArgs) -> Result<Outcome, CommandError> {
     let stop = interrupted();
     let language = arguments.emission.language()?;
     let (configuration, folder) = arguments.emission.load()?;
-    let mut artifacts = match &configuration {
-        Configuration::Card(card) => crate::emit_in(card, language)?,
-        Configuration::Receiver(receiver) => {
-            crate::protocols::t_format::emit_in(receiver, language)?
-        }
-    };
+    let with = arguments.with(&configuration)?;
+    let artifacts = emit_with(&configuration, language, &with)?;
     if arguments.driver {
-        add_driver(&configuration, &mut artifacts)?;
+        say("--driver is --with driver now");
     }
     if arguments.check {
         let mut found = artifact::differences(&folder, &artifacts);
@@ -58,12 +72,12 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
             "renew with: {}",
             repair(&program(), arguments, is_foreign)
         ));
-        return Err(GenError::CheckFailed(found));
+        return Err(CommandError::CheckFailed(found));
     }
     if !arguments.force {
         let foreign = artifact::foreign(&folder, &artifacts);
         if !foreign.is_empty() {
-            return Err(GenError::Input(foreign));
+            return Err(CommandError::Input(foreign));
         }
     }
     let left = artifact::leftovers(&folder, &artifacts);
@@ -109,34 +123,6 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
     })
 }
 
-/// The driver is of the emission: the MANIFEST has it, and a later emission without it takes it away.
-fn add_driver(
-    configuration: &Configuration,
-    artifacts: &mut Vec<Artifact>,
-) -> Result<(), GenError> {
-    let has_map = match configuration {
-        Configuration::Card(card) => card.bus != HostBus::Bare,
-        Configuration::Receiver(_) => false,
-    };
-    if !has_map {
-        return Err(GenError::input(
-            "--driver: the driver reads the register map of a card, which this has not; leave --driver out, or give a card with a bus",
-        ));
-    }
-    artifacts.retain(|file| file.path != artifact::MANIFEST);
-    for readme in artifacts
-        .iter_mut()
-        .filter(|file| file.path == artifact::README)
-    {
-        // The last row of its table of files.
-        let own_row = format!("{}\n| `MANIFEST` |", crate::driver::ROW);
-        readme.text = readme.text.replacen("| `MANIFEST` |", &own_row, 1);
-    }
-    artifacts.extend(crate::driver::artifacts());
-    artifacts.push(artifact::manifest(artifacts));
-    Ok(())
-}
-
 /// The command that makes the check pass; `force` if files would be lost by it.
 fn repair(program: &str, arguments: &EmitArgs, force: bool) -> String {
     let emission = &arguments.emission;
@@ -162,8 +148,9 @@ fn repair(program: &str, arguments: &EmitArgs, force: bool) -> String {
     );
     add("--name", emission.name.clone());
     add("--language", emission.language.clone());
-    if arguments.driver {
-        words.push("--driver".into());
+    let with = arguments.asked();
+    if !with.is_empty() {
+        words.push(format!("--with {}", with.join(",")));
     }
     if force {
         words.push("--force".into());

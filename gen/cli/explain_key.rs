@@ -1,9 +1,9 @@
 //! `explain KEY`: what a key, a table or a word of a configuration is.
 
-use crate::board::BOARD_KEYS;
-use crate::config::keys::{KEYS, TABLES};
-use crate::form::key::{head, Key, Usual};
-use crate::json_schema::plain;
+use endat_config::board::BOARD_KEYS;
+use endat_config::form::key::{head, Key, Usual};
+use endat_config::json_schema::plain;
+use endat_config::keys::{KEYS, TABLES};
 use std::fmt::Write;
 
 /// Everything of a configuration, or of a board's file, that is called so.

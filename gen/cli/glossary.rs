@@ -9,7 +9,10 @@ fn rows() -> impl Iterator<Item = (&'static str, String)> {
             .strip_prefix("| ")?
             .strip_suffix(" |")?
             .split_once(" | ")?;
-        Some((word, crate::json_schema::plain(&without_links(meaning))))
+        Some((
+            word,
+            endat_config::json_schema::plain(&without_links(meaning)),
+        ))
     });
     rows.filter(|(word, _)| *word != "word")
 }

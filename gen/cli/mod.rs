@@ -1,57 +1,33 @@
 //! The command line: arguments in, an [`Outcome`] out. Results are text for stdout, messages are lines for stderr.
 
 mod area;
-mod bench;
 mod boards;
 mod build;
 mod campaign;
-pub mod colour;
 mod crc_command;
 mod doctor;
-mod documents;
 mod emit;
 mod explain_key;
-mod flows;
+mod explain_name;
 mod glossary;
-mod host;
+mod moved;
 mod new;
 mod pictures;
 mod prove;
-mod recorded;
 mod schema;
 mod shmoo;
 mod sim;
-mod work;
 
-use crate::board::Board;
-use crate::config::{self, check_name, Configuration};
-use crate::error::{shown, GenError};
-use crate::explain;
-use crate::language::Language;
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use endat_config::arguments::{board_of, SourceArgs, TargetArgs};
+use endat_config::explain;
+use endat_config::{self as config, check_name, Configuration};
+use endat_console::error::CommandError;
+use endat_emit::language::Language;
+use endat_terminal::outcome::{to_json, Outcome};
+use endat_terminal::{colour, documents, work};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-
-/// What a run of the program gives.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Outcome {
-    /// Results.
-    pub stdout: String,
-    /// Messages, one a line.
-    pub messages: Vec<String>,
-    /// 0 good, 1 a check failed, 2 wrong usage or input.
-    pub exit_code: u8,
-}
-
-impl Outcome {
-    /// A good result.
-    fn good(stdout: impl Into<String>) -> Self {
-        Self {
-            stdout: stdout.into(),
-            ..Self::default()
-        }
-    }
-}
 
 /// Makes the Verilog or VHDL, the constraints and the register map of an EnDat receiver card from one configuration.
 ///
@@ -90,18 +66,14 @@ enum Command {
         /// Print the file of this board, to start one of your own from
         #[arg(long, value_name = "NAME")]
         show: Option<String>,
-        /// Build the shipped card with five seeds on each board that open tools know, or on this one, and print what came of it as a table:
-        /// takes an hour
-        #[arg(long, value_name = "NAME", num_args = 0..=1, conflicts_with = "show")]
-        measure: Option<Option<String>>,
         /// Draw how the shipped card is wired on this board (name or file), as SVG
-        #[arg(long, value_name = "BOARD", conflicts_with_all = ["show", "measure", "json", "page"])]
+        #[arg(long, value_name = "BOARD", conflicts_with_all = ["show", "json", "page"])]
         wiring: Option<String>,
         /// As the table of docs/boards.md
-        #[arg(long, conflicts_with_all = ["show", "measure", "json"])]
+        #[arg(long, conflicts_with_all = ["show", "json"])]
         page: bool,
         /// As JSON
-        #[arg(long, conflicts_with_all = ["show", "measure"])]
+        #[arg(long, conflicts_with = "show")]
         json: bool,
     },
     /// Show what a configuration becomes: clocks, timing, frame lengths, sampling rates, link load; or what a key of it, a cause,
@@ -128,67 +100,18 @@ enum Command {
     Prove(prove::ProveArgs),
     /// Measure the area, and the speed, of card, channel and blocks with yosys and nextpnr
     Area(area::AreaArgs),
-    /// Put a card's Verilog through every synthesis flow of yosys, and count what it complains about
-    Flows(flows::FlowsArgs),
-    /// Measure the simulators, this project's and others
-    Bench(bench::BenchArgs),
     /// Run thousands of cases side by side and check every frame
     Campaign(campaign::CampaignArgs),
     /// Map where frames are good, and by what margin: cable, clock, jitter, noise ...
     Shmoo(shmoo::ShmooArgs),
     /// Move the sample over the bit: how much jitter it stands where; options as those of shmoo
     Eye(shmoo::ShmooArgs),
-    /// Run a card without hardware, for this program and others: the core and encoders, simulated, behind a port
-    Card(host::virtual_card::CardArgs),
-    /// Make a fault in a virtual card that runs: plug, cable, encoder
-    Inject(host::inject::InjectArgs),
-    /// Ask a card who it is, and what its encoders are
-    Id(host::id::IdArgs),
-    /// Read the latest position of every channel
-    Read(host::read::ReadArgs),
-    /// Log positions as CSV, JSON lines or Parquet
-    Log(host::log::LogArgs),
-    /// Draw a recording: positions over time, faults below them
-    Plot(recorded::plot::PlotArgs),
-    /// Say what is in a recording: rate, what is missing, noise, drift, faults
-    Stats(recorded::stats::StatsArgs),
-    /// Watch positions, rate, health and margin live
-    Monitor(host::monitor::MonitorArgs),
-    /// Watch a card in a browser: positions over time, causes, health, registers; record
-    View(host::view::ViewArgs),
-    /// Serve a card to PandABlocks clients, which record HDF5
-    Serve(host::serve::ServeArgs),
-    /// Read and write registers of a card by name
-    Reg(host::reg::RegArgs),
-    /// Read and write words of the encoder's memory
-    Param(host::param::ParamArgs),
-    /// Show where the edges of DATA are, as the card has measured it
-    Margin(host::margin::MarginArgs),
     /// Say which programs of others are there, and what those are for that are not
     Doctor(doctor::DoctorArgs),
     /// Print the completions of the command line for a shell
     Completions(documents::CompletionsArgs),
     /// Print the manual page, or write those of all commands
     Man(documents::ManArgs),
-}
-
-/// Which configuration.
-#[derive(Args, Clone, Default)]
-struct SourceArgs {
-    /// Configuration file; - reads standard input
-    #[arg(long, value_name = "FILE", conflicts_with = "preset")]
-    config: Option<PathBuf>,
-    /// Configuration that comes with the program [default: s6_two_channel]
-    #[arg(long, value_name = "NAME")]
-    preset: Option<String>,
-}
-
-/// On which board.
-#[derive(Args, Clone, Default)]
-struct TargetArgs {
-    /// Board instead of the configuration's: one that comes with the program, or a file [default: as in the configuration]
-    #[arg(long, value_name = "NAME|FILE")]
-    board: Option<String>,
 }
 
 /// Folder that everything is emitted into unless another is given.
@@ -213,13 +136,13 @@ struct EmissionArgs {
 }
 
 impl EmissionArgs {
-    fn language(&self) -> Result<Language, GenError> {
+    fn language(&self) -> Result<Language, CommandError> {
         let language = self.language.as_deref().map(Language::named);
         Ok(language.transpose()?.unwrap_or_default())
     }
 
     /// The configuration under its name, and the folder of its files.
-    fn load(&self) -> Result<(Configuration, PathBuf), GenError> {
+    fn load(&self) -> Result<(Configuration, PathBuf), CommandError> {
         let board = self.target.load()?;
         let mut configuration = self.source.load_any_on(board.as_ref())?;
         let name = match &mut configuration {
@@ -228,58 +151,15 @@ impl EmissionArgs {
         };
         if let Some(other) = &self.name {
             check_name(other)
-                .map_err(|text| GenError::input(format!("--name = {other:?}: {text}")))?;
+                .map_err(|text| CommandError::input(format!("--name = {other:?}: {text}")))?;
             name.clone_from(other);
         }
         let out = self.out.as_deref().unwrap_or(Path::new(OUT));
         if out.as_os_str().is_empty() {
-            return Err(GenError::input("--out = \"\": is empty; give a folder"));
+            return Err(CommandError::input("--out = \"\": is empty; give a folder"));
         }
         let folder = out.join(name);
         Ok((configuration, folder))
-    }
-}
-
-impl TargetArgs {
-    fn load(&self) -> Result<Option<Board>, GenError> {
-        self.board
-            .as_deref()
-            .map(|word| board_of("--board", word))
-            .transpose()
-    }
-}
-
-/// A board by its name, or in a file.
-fn board_of(option: &str, word: &str) -> Result<Board, GenError> {
-    if word.contains(['/', '\\', '.']) {
-        return Ok(Board::from_file(Path::new(word))?);
-    }
-    Board::named(word).map_err(|text| {
-        GenError::input(format!(
-            "{option} = {}: {text}, or give a file of your own, as {option} FILE.toml",
-            shown(word)
-        ))
-    })
-}
-
-impl SourceArgs {
-    /// Either kind.
-    fn load_any(&self) -> Result<Configuration, GenError> {
-        self.load_any_on(None)
-    }
-
-    /// The same on another board than its own. Without a configuration it is the shipped one, with clocks that suit the board.
-    fn load_any_on(&self, board: Option<&Board>) -> Result<Configuration, GenError> {
-        let name = self.preset.as_deref().unwrap_or(config::DEFAULT_PRESET);
-        match (&self.config, board) {
-            (Some(file), board) => config::load_any_file(file, board),
-            (None, None) => config::load_any_preset(name),
-            (None, Some(board)) => {
-                let text = config::preset_for("--preset", name, board)?;
-                let file = format!("{name}.toml");
-                Ok(config::parse_any_on(&file, &text, Some(board))?)
-            }
-        }
     }
 }
 
@@ -290,36 +170,16 @@ pub fn command_line() -> clap::Command {
 
 /// Runs the program with these arguments; the first is the program's name.
 pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Outcome {
-    let painted = painted(arguments);
-    Outcome {
-        stdout: colour::plain(&painted.stdout),
-        messages: painted.messages.iter().map(|m| colour::plain(m)).collect(),
-        exit_code: painted.exit_code,
-    }
+    painted(arguments).plain()
 }
 
 /// The same with colours, see [`colour`].
 pub fn painted(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Outcome {
-    match Cli::try_parse_from(arguments) {
-        Ok(cli) => execute(cli).unwrap_or_else(|error| Outcome {
-            stdout: String::new(),
-            messages: error.messages().to_vec(),
-            exit_code: error.exit_code(),
-        }),
-        Err(error) if !error.use_stderr() => Outcome::good(error.render().ansi().to_string()),
-        Err(error) => {
-            let text = error.to_string();
-            let messages = text
-                .trim_end()
-                .trim_start_matches("error: ")
-                .lines()
-                .filter(|l| !l.is_empty());
-            Outcome {
-                stdout: String::new(),
-                messages: messages.map(str::to_owned).collect(),
-                exit_code: 2,
-            }
-        }
+    let words: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let moved = moved::run(words.get(1..).unwrap_or_default());
+    match moved {
+        Some(ran) => ran.unwrap_or_else(|error| Outcome::failed(&error)),
+        None => Outcome::of(words, execute),
     }
 }
 
@@ -333,7 +193,7 @@ fn with_engine(mut outcome: Outcome) -> Outcome {
     outcome
 }
 
-fn execute(cli: Cli) -> Result<Outcome, GenError> {
+fn execute(cli: Cli) -> Result<Outcome, CommandError> {
     match cli.command {
         None => emit::run(&emit::EmitArgs::default()),
         Some(Command::Emit(arguments)) => emit::run(&arguments),
@@ -352,10 +212,6 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
             show: Some(name), ..
         }) => boards::show(&name),
         Some(Command::Boards {
-            measure: Some(name),
-            ..
-        }) => boards::measure(name.as_deref()),
-        Some(Command::Boards {
             wiring: Some(name), ..
         }) => boards::wiring(&name),
         Some(Command::Boards { page: true, .. }) => boards::page(),
@@ -363,7 +219,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Presets { json, .. }) => presets(json),
         Some(Command::Explain {
             name: Some(name), ..
-        }) => host::explain_name::text(&name).map(Outcome::good),
+        }) => explain_name::text(&name).map(Outcome::good),
         Some(Command::Explain {
             source,
             target,
@@ -374,7 +230,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
             match source.load_any_on(target.load()?.as_ref())? {
                 Configuration::Card(card) => shown(&explain::report(&card)),
                 Configuration::Receiver(receiver) => {
-                    shown(&crate::protocols::t_format::report(&receiver))
+                    shown(&endat_config::explain::receiver::report(&receiver))
                 }
             }
         }
@@ -383,32 +239,17 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
         Some(Command::Prove(arguments)) => prove::run(&arguments),
         Some(Command::Area(arguments)) => area::run(&arguments),
-        Some(Command::Flows(arguments)) => flows::run(&arguments),
-        Some(Command::Bench(arguments)) => bench::run(&arguments).map(with_engine),
         Some(Command::Campaign(arguments)) => campaign::run(&arguments).map(with_engine),
         Some(Command::Shmoo(arguments)) => shmoo::run(&arguments).map(with_engine),
         Some(Command::Eye(arguments)) => shmoo::eye(arguments).map(with_engine),
-        Some(Command::Card(arguments)) => host::virtual_card::run(&arguments).map(with_engine),
-        Some(Command::Inject(arguments)) => host::inject::run(&arguments),
-        Some(Command::Id(arguments)) => host::id::run(&arguments),
-        Some(Command::Read(arguments)) => host::read::run(&arguments),
-        Some(Command::Log(arguments)) => host::log::run(&arguments),
-        Some(Command::Plot(arguments)) => recorded::plot::run(&arguments),
-        Some(Command::Stats(arguments)) => recorded::stats::run(&arguments),
-        Some(Command::Monitor(arguments)) => host::monitor::run(&arguments),
-        Some(Command::View(arguments)) => host::view::run(&arguments),
-        Some(Command::Serve(arguments)) => host::serve::run(&arguments),
-        Some(Command::Reg(arguments)) => host::reg::run(&arguments),
-        Some(Command::Param(arguments)) => host::param::run(&arguments),
-        Some(Command::Margin(arguments)) => host::margin::run(&arguments),
         Some(Command::Doctor(arguments)) => doctor::run(&arguments),
-        Some(Command::Completions(arguments)) => documents::completions(&arguments),
-        Some(Command::Man(arguments)) => documents::man(&arguments),
+        Some(Command::Completions(arguments)) => documents::completions(command_line(), &arguments),
+        Some(Command::Man(arguments)) => documents::man(command_line(), &arguments),
     }
 }
 
 /// First line of each preset beside its name.
-fn presets(json: bool) -> Result<Outcome, GenError> {
+fn presets(json: bool) -> Result<Outcome, CommandError> {
     let summary = |text: &'static str| {
         text.lines()
             .next()
@@ -432,21 +273,14 @@ fn presets(json: bool) -> Result<Outcome, GenError> {
 
 /// A report that can be shown as text and as JSON.
 trait Shown {
-    fn shown(&self, json: bool) -> Result<String, GenError>;
+    fn shown(&self, json: bool) -> Result<String, CommandError>;
 }
 
 impl<T: serde::Serialize + ToString> Shown for T {
-    fn shown(&self, json: bool) -> Result<String, GenError> {
+    fn shown(&self, json: bool) -> Result<String, CommandError> {
         match json {
             true => to_json(self),
             false => Ok(self.to_string()),
         }
     }
-}
-
-/// Indented JSON with a newline at the end.
-fn to_json(value: &impl serde::Serialize) -> Result<String, GenError> {
-    let text = serde_json::to_string_pretty(value);
-    text.map(|t| t + "\n")
-        .map_err(|e| GenError::fault("JSON", &e))
 }

@@ -3,13 +3,13 @@
 use super::colour;
 use super::work::Steps;
 use super::{to_json, Outcome, SourceArgs};
-use crate::artifact::{read_regular, Artifact};
-use crate::config::{load_any_preset, Configuration, Project, PRESETS, RECEIVER_PRESETS};
-use crate::error::GenError;
-use crate::prove::frames::{prove_cases, Line, Undriven, PHASES};
-use crate::prove::{self, Report, Subject};
 use clap::Args;
+use endat_config::{load_any_preset, Configuration, Project, PRESETS, RECEIVER_PRESETS};
+use endat_console::artifact::{read_regular, Artifact};
+use endat_console::error::CommandError;
 use endat_hdl::endat::timing::cycles_at_most;
+use endat_tools::prove::frames::{prove_cases, Line, Undriven, PHASES};
+use endat_tools::prove::{self, Report, Subject};
 use std::path::PathBuf;
 
 /// Largest Verilog file that is read.
@@ -29,10 +29,10 @@ pub struct ProveArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
-    #[arg(long, value_name = "DELAY_CYCLES", value_parser = crate::number::parser(0, 1023), allow_negative_numbers = true)]
+    #[arg(long, value_name = "DELAY_CYCLES", value_parser = endat_console::number::parser(0, 1023), allow_negative_numbers = true)]
     frames: Option<u32>,
     /// Phases of the microsecond in which these frames begin, evenly spread [default: 16, or all where there are fewer]
-    #[arg(long, value_name = "N", value_parser = crate::number::parser(1, 1000), requires = "frames", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = endat_console::number::parser(1, 1000), requires = "frames", allow_negative_numbers = true)]
     phases: Option<u32>,
     /// DATA while nobody drives it, in these frames [default: low behind an input filter, otherwise anything]
     #[arg(long, value_enum, requires = "frames")]
@@ -46,7 +46,7 @@ pub struct ProveArgs {
 }
 
 /// Runs the command.
-pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &ProveArgs) -> Result<Outcome, CommandError> {
     if arguments.page {
         return page();
     }
@@ -57,13 +57,13 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
             let path = folder.join(&file.path);
             let remedy = "give the folder that `emit` wrote for this configuration";
             let bytes = read_regular(&path, FILE_BYTES_MAX);
-            let bytes = bytes.map_err(|e| GenError::io("read", &path, &e, remedy))?;
+            let bytes = bytes.map_err(|e| CommandError::io("read", &path, &e, remedy))?;
             *file = Artifact::new(&file.path, String::from_utf8_lossy(&bytes));
         }
     }
     if let Some(delay_cycles) = arguments.frames {
         let Configuration::Card(project) = &configuration else {
-            return Err(GenError::input(
+            return Err(CommandError::input(
                 "--frames: this is a T-format receiver, and only frames of EnDat are proved; give a card, or leave --frames out",
             ));
         };
@@ -100,7 +100,7 @@ fn verdicts(report: &str) -> String {
 }
 
 /// What is proved of a configuration.
-fn subject(configuration: &Configuration) -> Result<Subject, GenError> {
+fn subject(configuration: &Configuration) -> Result<Subject, CommandError> {
     match configuration {
         Configuration::Card(project) => Subject::new(project),
         Configuration::Receiver(receiver) => Subject::receiver(receiver),
@@ -108,7 +108,11 @@ fn subject(configuration: &Configuration) -> Result<Subject, GenError> {
 }
 
 /// Refuses a cable that is longer than the settings of the first channel allow: its frames need not arrive.
-fn check_delay(source: &SourceArgs, project: &Project, delay_cycles: u32) -> Result<(), GenError> {
+fn check_delay(
+    source: &SourceArgs,
+    project: &Project,
+    delay_cycles: u32,
+) -> Result<(), CommandError> {
     let Some((_, channel)) = project.card.endat_channels().next() else {
         return Ok(());
     };
@@ -122,7 +126,7 @@ fn check_delay(source: &SourceArgs, project: &Project, delay_cycles: u32) -> Res
         Some(_) => ", or raise cable_m",
         None => "",
     };
-    Err(GenError::input(format!(
+    Err(CommandError::input(format!(
         "--frames = {delay_cycles}: a delay of at most {most} system clock cycles one way is what cable_m = {} allows; give at most {most}{or_raise}",
         channel.spec.cable_m
     )))
@@ -134,7 +138,7 @@ fn frames(
     subject: &Subject,
     project: &Project,
     delay_cycles: u32,
-) -> Result<Outcome, GenError> {
+) -> Result<Outcome, CommandError> {
     check_delay(&arguments.source, project, delay_cycles)?;
     let undriven = arguments.undriven;
     let undriven = undriven.unwrap_or_else(|| Undriven::usual(&project.card));
@@ -162,7 +166,7 @@ fn frames(
 }
 
 /// The page of the presets.
-fn page() -> Result<Outcome, GenError> {
+fn page() -> Result<Outcome, CommandError> {
     let mut reports = vec![];
     let steps = Steps::new(None);
     let begin = |step: &str| steps.begin(step);

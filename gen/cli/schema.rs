@@ -1,10 +1,10 @@
 //! `schema`: what editors need to complete and check configurations.
 
-use super::pictures::{check_all, write_all, File};
 use super::{to_json, Outcome};
-use crate::error::GenError;
-use crate::json_schema::{self, COMMENT};
 use clap::{Args, ValueEnum};
+use endat_config::json_schema::{self, COMMENT};
+use endat_console::error::CommandError;
+use endat_terminal::files::{check_all, write_all, File};
 use std::path::PathBuf;
 
 /// Of which files.
@@ -29,7 +29,7 @@ pub struct SchemaArgs {
 }
 
 /// Prints a schema, or writes it.
-pub fn run(arguments: &SchemaArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &SchemaArgs) -> Result<Outcome, CommandError> {
     let schema = match arguments.form {
         Form::Card => json_schema::card(),
         Form::Board => json_schema::board(),

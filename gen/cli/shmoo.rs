@@ -1,19 +1,20 @@
 //! `shmoo`: maps of where frames are good.
 
-use super::pictures::{check_all, write_all, File};
 use super::work::{progress, ThreadsArgs};
 use super::{to_json, Outcome};
-use crate::error::{shown, GenError};
-use crate::number::number;
 use clap::{Args, ValueEnum};
+use endat_console::error::{shown, CommandError};
+use endat_console::number::number;
+use endat_draw::decimal;
+use endat_draw::is_drawing;
 use endat_hdl::config::{SYSTEM_HZ_MAX, SYSTEM_HZ_MIN};
 use endat_hdl::endat::timing;
 use endat_hdl::protocol::{ModeCommand, POSITION_BITS};
-use endat_sim::decimal;
-use endat_sim::diagram::{is_drawing, map_svg};
+use endat_sim::diagram::map_svg;
 use endat_sim::shmoo::{
     is_table, Axis, Conditions, Fate, Map, Phase, Plan, Quantity, ReceiverKind, DECIMALS,
 };
+use endat_terminal::files::{check_all, write_all, File};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -132,11 +133,11 @@ const FRAMES_MAX: u64 = 10_000;
 type Clocks = (u64, ReceiverKind);
 
 /// Runs `eye`: the sample is moved over the bit, and the jitter upwards.
-pub fn eye(arguments: ShmooArgs) -> Result<Outcome, GenError> {
+pub fn eye(arguments: ShmooArgs) -> Result<Outcome, CommandError> {
     if let Some(phase) = arguments.phase.filter(|p| *p != PhaseArg::Fixed) {
         let name = phase.to_possible_value();
         let name = name.as_ref().map_or("?", |n| n.get_name());
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "--phase = {name}: eye moves the sample, which only a phase from a register allows; leave it out, or use shmoo"
         )));
     }
@@ -150,7 +151,7 @@ pub fn eye(arguments: ShmooArgs) -> Result<Outcome, GenError> {
 }
 
 /// Runs the command.
-pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &ShmooArgs) -> Result<Outcome, CommandError> {
     let plan = plan(arguments)?;
     let file = |option, path: &Option<PathBuf>, is_ours| {
         path.clone().map(|path| File {
@@ -167,7 +168,7 @@ pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
     let told = progress(plan.channels(), "channels");
     let map = plan
         .run(arguments.threads.count()?, told)
-        .map_err(|e| GenError::fault("shmoo", &e))?;
+        .map_err(|e| CommandError::fault("shmoo", &e))?;
     if let Some(svg) = &mut svg {
         svg.text = map_svg(&map, &title(&plan));
     }
@@ -202,7 +203,7 @@ fn title(plan: &Plan) -> String {
     }
 }
 
-fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
+fn plan(arguments: &ShmooArgs) -> Result<Plan, CommandError> {
     let widths = (*POSITION_BITS.start()).into()..=(*POSITION_BITS.end()).into();
     let system_clocks = SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX;
     let system_hz = number("--system-hz", &arguments.system_hz, system_clocks)?;
@@ -223,7 +224,7 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
         majority: arguments.majority,
     };
     if conditions.receiver.majority && conditions.receiver.phase == Phase::Step {
-        return Err(GenError::input(
+        return Err(CommandError::input(
             "--phase = step: a channel without alignment has no --majority; leave that out, or choose another --phase",
         ));
     }
@@ -232,7 +233,7 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
     for text in &arguments.at {
         let (quantity, value) = named("--at", text)?;
         if set.contains(&quantity) {
-            return Err(GenError::input(format!(
+            return Err(CommandError::input(format!(
                 "--at = {}: {} is set twice; leave one out",
                 shown(text),
                 quantity.name()
@@ -250,7 +251,7 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
     );
     let mut moved = given.filter(|(_, text)| text.starts_with(offset));
     if let (Some((flag, text)), true) = (moved.next(), conditions.receiver.phase != Phase::Fixed) {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "{flag} = {}: moves the sample, which only a phase from a register allows; add --phase fixed, or use eye",
             shown(text)
         )));
@@ -278,13 +279,13 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
     };
     let (x, y) = (axis("--x", &arguments.x)?, axis("--y", &arguments.y)?);
     if x.quantity == y.quantity {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "--y = {}: is what --x has as well; give another quantity",
             x.quantity.name()
         )));
     }
     if let Some(quantity) = set.iter().find(|q| [x.quantity, y.quantity].contains(q)) {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "--at = {}: is an axis; leave it out, or give another --x or --y",
             quantity.name()
         )));
@@ -301,7 +302,7 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
     };
     let channels = plan.channels();
     if channels > CHANNELS_MAX {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "--runs = {runs}: {channels} channels in all cells together, at most {CHANNELS_MAX}; make fewer, or fewer values of --x and --y"
         )));
     }
@@ -325,16 +326,16 @@ fn example(flag: &str, name: &str) -> String {
 }
 
 /// A quantity and what stands behind its name.
-fn named<'t>(flag: &str, text: &'t str) -> Result<(Quantity, &'t str), GenError> {
+fn named<'t>(flag: &str, text: &'t str) -> Result<(Quantity, &'t str), CommandError> {
     let (name, rest) = text.split_once('=').unwrap_or((text, ""));
     match Quantity::ALL.into_iter().find(|q| q.name() == name) {
         Some(quantity) if !rest.is_empty() => Ok((quantity, rest)),
-        Some(_) => Err(GenError::input(format!(
+        Some(_) => Err(CommandError::input(format!(
             "{flag} = {}: has no value; write, for example, {}",
             shown(text),
             example(flag, name)
         ))),
-        None => Err(GenError::input(format!(
+        None => Err(CommandError::input(format!(
             "{flag} = {}: begins with no quantity, as there are {}; write, for example, {}",
             shown(text),
             Quantity::ALL.map(Quantity::name).join(", "),
@@ -350,9 +351,14 @@ fn one(
     quantity: Quantity,
     value: &str,
     clocks: Clocks,
-) -> Result<f64, GenError> {
+) -> Result<f64, CommandError> {
     let (low, high) = quantity.range(clocks.0, clocks.1);
-    let fail = |what: String| Err(GenError::input(format!("{flag} = {}: {what}", shown(text))));
+    let fail = |what: String| {
+        Err(CommandError::input(format!(
+            "{flag} = {}: {what}",
+            shown(text)
+        )))
+    };
     match value.trim().parse::<f64>() {
         // The limits of a clock are rounded where they are shown.
         Ok(value) if quantity == Quantity::Filter && value.fract() != 0.0 => fail(format!(
@@ -375,10 +381,10 @@ fn one(
     }
 }
 
-fn axis(flag: &str, text: &str, clocks: Clocks) -> Result<Axis, GenError> {
+fn axis(flag: &str, text: &str, clocks: Clocks) -> Result<Axis, CommandError> {
     let (quantity, values) = named(flag, text)?;
     let one = |value: &str| one(flag, text, quantity, value, clocks);
-    let fail = |what: &str| GenError::input(format!("{flag} = {}: {what}", shown(text)));
+    let fail = |what: &str| CommandError::input(format!("{flag} = {}: {what}", shown(text)));
     let many = format!("has more than {VALUES_MAX} values; make fewer");
     let parts: Vec<&str> = values.split(':').collect();
     let values: Vec<f64> = match parts[..] {

@@ -2,8 +2,8 @@
 
 use super::pictures::{draw, Drawn, Pictures};
 use super::{to_json, Outcome};
-use crate::error::{shown, GenError};
 use clap::Args;
+use endat_console::error::{shown, CommandError};
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::endat::channel::{Channel, FixedTimes};
 use endat_hdl::endat::service::program::ServiceTimes;
@@ -63,7 +63,7 @@ pub struct SimArgs {
 const SAMPLE_LATENCY_CYCLES: u64 = 3;
 
 /// Runs the command.
-pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &SimArgs) -> Result<Outcome, CommandError> {
     let Some(name) = &arguments.name else {
         return list(arguments.json);
     };
@@ -79,7 +79,7 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
         return run_t_format(arguments);
     }
     let Some(scenario) = scenario::named(name) else {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "scenario = {}: unknown scenario; known scenarios: {}",
             shown(name),
             known()
@@ -91,7 +91,7 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
             return Ok(Drawn::All);
         }
         text.parse().map(Drawn::Frame).map_err(|_| {
-            GenError::input(format!(
+            CommandError::input(format!(
                 "--frame = {}: is not the number of a frame; give 0, 1, 2, ... or all",
                 shown(text)
             ))
@@ -134,9 +134,9 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
 }
 
 /// The story with a T-format encoder: one port, whose line can be written.
-fn run_t_format(arguments: &SimArgs) -> Result<Outcome, GenError> {
+fn run_t_format(arguments: &SimArgs) -> Result<Outcome, CommandError> {
     if let Some(text) = arguments.channel.as_deref().filter(|text| *text != "0") {
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "--channel = {}: {} has one channel; leave it out",
             shown(text),
             t_format::NAME
@@ -186,11 +186,11 @@ fn t_format_json(report: &TFormatReport) -> Value {
 }
 
 /// What cannot go wrong has.
-fn fault(e: &dyn std::fmt::Display) -> GenError {
-    GenError::fault("design", e)
+fn fault(e: &dyn std::fmt::Display) -> CommandError {
+    CommandError::fault("design", e)
 }
 
-fn list(as_data: bool) -> Result<Outcome, GenError> {
+fn list(as_data: bool) -> Result<Outcome, CommandError> {
     let all: Vec<_> = scenario::all()
         .iter()
         .map(|s| (s.name, s.summary))
@@ -210,13 +210,13 @@ fn list(as_data: bool) -> Result<Outcome, GenError> {
 }
 
 /// Which channels of the scenario to run.
-fn chosen(arguments: &SimArgs, scenario: &Scenario) -> Result<Vec<usize>, GenError> {
+fn chosen(arguments: &SimArgs, scenario: &Scenario) -> Result<Vec<usize>, CommandError> {
     let count = scenario.channels.len();
     match &arguments.channel {
         None => Ok((0..count).collect()),
         Some(text) => match text.parse::<usize>() {
             Ok(index) if index < count => Ok(vec![index]),
-            _ => Err(GenError::input(format!(
+            _ => Err(CommandError::input(format!(
                 "--channel = {}: outside 0..{}; choose a channel of {}",
                 shown(text),
                 count - 1,
@@ -226,7 +226,10 @@ fn chosen(arguments: &SimArgs, scenario: &Scenario) -> Result<Vec<usize>, GenErr
     }
 }
 
-fn run_channel(scenario: &Scenario, index: usize) -> Result<(Bench<Compiled>, Report), GenError> {
+fn run_channel(
+    scenario: &Scenario,
+    index: usize,
+) -> Result<(Bench<Compiled>, Report), CommandError> {
     let settings = &scenario.channels[index].settings;
     let times = FixedTimes {
         abort_us: settings.abort_us,

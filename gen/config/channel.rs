@@ -4,7 +4,7 @@ use super::keys::*;
 use super::reader::{At, Table};
 use super::trigger;
 use crate::form::key::Key;
-use crate::other_protocol::Other;
+use crate::protocols::OtherConfig;
 use endat_hdl::config::{limits, narrowest, ChannelSpec, Limits, PositionRange, START_WINDOW_BITS};
 use endat_hdl::endat::timing::cycles_at_most;
 use endat_hdl::protocol::ModeCommand;
@@ -147,7 +147,7 @@ pub fn read_endat(
 
 /// A channel that speaks another protocol.
 pub fn read_other(
-    other: &dyn Other,
+    other: &dyn OtherConfig,
     table: &Table<'_, '_>,
     system_hz: Option<u64>,
 ) -> Option<Channel> {

@@ -1,4 +1,4 @@
-//! Every key of a configuration, said once: `gen/form/key.rs` says who takes what from here. A new key is a row.
+//! Every key of a configuration, said once: `gen/config/form/key.rs` says who takes what from here. A new key is a row.
 
 pub use super::forms::*;
 use super::names::{NAME_MAX, NAME_PATTERN};
@@ -57,6 +57,8 @@ keys! {
     NAME = Key::text(TOP, "name", "folder, files and top module")
         .note("letters, digits and underscores, a letter first; no reserved word of Verilog, VHDL or C")
         .at_most(NAME_MAX).pattern(NAME_PATTERN).required("\"my_card\"");
+    WITH = Key::texts(TOP, "with", "files besides those of the card, as `emit --with` takes them")
+        .one_of(super::extras::choices).usual(Usual::Empty);
 
     SYSTEM_HZ = Key::number(&["clock"], "system_hz", "clock of the core")
         .note("as far as the board's clock manager makes it").of(CARD_FORM).required("100_000_000");

@@ -5,6 +5,7 @@ use super::channel::read_encoder;
 use super::check_name;
 use super::device::read_initial_values;
 use super::document::parse;
+use super::extras;
 use super::keys::{tables, BUS, CARD_FORM, CHANNELS, KEYS, NAME, PROTOCOL, RECEIVER_FORM};
 use super::reader::{Source, Table};
 use super::safety::read_guards;
@@ -28,6 +29,8 @@ pub struct Receiver {
     pub start: TFormatStart,
     /// The device gives registers their start values when it is configured.
     pub initial_values: bool,
+    /// What its emission has besides, as words of [`crate::extras`].
+    pub with: Vec<String>,
     /// Stored bits are checked.
     pub upset_guards: bool,
     /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
@@ -70,6 +73,7 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
             root.complain(name.line, NAME.name, &format!("{:?}", name.value), &text);
         }
     }
+    let with = extras::read(&root);
     let host = root.table("host", &empty);
     host.string(&BUS);
     let channels = root.tables(CHANNELS).unwrap_or_default();
@@ -116,6 +120,7 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
         encoder,
         start,
         initial_values,
+        with,
         upset_guards,
         hash: hash(&canonical),
     })
@@ -126,7 +131,7 @@ fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
     let protocol = table.string(&PROTOCOL);
     table.require_as(&PROTOCOL, "\"t_format\"");
     if let Some(protocol) = protocol.filter(|p| p.value != Protocol::TFormat.row().word) {
-        let text = "the bus \"dsp\" is that of a T-format receiver; use protocol \"t_format\", or another bus for other protocols";
+        let text = "the bus \"dsp\" is that of a T-format receiver; use \"t_format\", or choose another host.bus";
         let shown = format!("{:?}", protocol.value);
         table.complain(protocol.line, PROTOCOL.name, &shown, text);
     }

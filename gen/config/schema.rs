@@ -10,6 +10,7 @@ use super::{
     base, canonical, check_name, line, outputs, protocol, safety, service, stream, trigger, Project,
 };
 use crate::board::{card_ports, Assignment, Board, MorePorts};
+use crate::extras;
 use crate::protocols;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::*;
@@ -325,6 +326,7 @@ pub fn read(source: &Source<'_>, other: Option<&Board>) -> Option<Project> {
     let empty = DeTable::new();
     let root = Table::root(source, &document);
     let name = read_name(&root);
+    let with = extras::read(&root);
     let tables = Tables::new(root, &empty);
     let written = Written::read(source, &tables, other);
     written.refuse_useless(&tables);
@@ -364,6 +366,7 @@ pub fn read(source: &Source<'_>, other: Option<&Board>) -> Option<Project> {
         pll,
         pins,
         hash,
+        with,
     })
 }
 

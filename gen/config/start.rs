@@ -4,11 +4,11 @@ use super::document::parse;
 use super::reader::Source;
 use super::{check_name, preset_of, DEFAULT_PRESET};
 use crate::board::Board;
-use crate::error::GenError;
+use endat_console::error::CommandError;
 use std::ops::Range;
 
 /// Text of a preset for this board, to start from; `option` is what asked for the preset. The shipped one also takes the board's clocks.
-pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, GenError> {
+pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, CommandError> {
     let text = preset_of(option, name)?;
     let source = Source::new(name, text);
     let Some(document) = parse(&source, &[]) else {
@@ -47,14 +47,14 @@ pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, Gen
             ("endat", "clock_hz", start.clock_hz),
         ];
         for (table, key, hz) in clocks {
-            edits.extend(value(table, key).map(|span| (span, crate::number::grouped(hz))));
+            edits.extend(value(table, key).map(|span| (span, endat_console::number::grouped(hz))));
         }
     }
     // A slower link than the preset's, where the board's chip is slower.
     if let Some(span) = value("link", "baud") {
         let asked = text.get(span.clone()).and_then(number);
         if asked.is_some_and(|baud| baud > board.uart_baud_max) {
-            edits.push((span, crate::number::grouped(board.uart_baud_max)));
+            edits.push((span, endat_console::number::grouped(board.uart_baud_max)));
         }
     }
     edits.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
@@ -96,7 +96,7 @@ fn number(text: &str) -> Option<u64> {
 mod tests {
     use super::*;
     use crate::board;
-    use crate::config::parse_on;
+    use crate::parse_on;
 
     #[test]
     fn the_shipped_card_is_good_on_every_board() {
@@ -111,7 +111,10 @@ mod tests {
             assert!(text.contains(&format!("name = {name:?}")), "{text}");
         }
         assert_eq!(
-            [crate::number::grouped(7), crate::number::grouped(3_125_000)],
+            [
+                endat_console::number::grouped(7),
+                endat_console::number::grouped(3_125_000)
+            ],
             ["7", "3_125_000"]
         );
     }

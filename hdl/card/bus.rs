@@ -1,10 +1,10 @@
-//! Fronts: the card behind a bus of a system on chip or of a processor instead of a UART.
+//! Fronts: a card on a bus of a system on chip or of a processor instead of a UART.
 //!
 //! ```text
 //! bus pins <-> front (ApbFront, ...) <-> WordAccess <-> CardCore <-> trigger_i, endat_*, led_*
 //! ```
 //!
-//! A front handles its bus and no registers; [`word_access`] turns one word of it into the bank's bytes and decides which
+//! A front implements its bus but no registers. [`word_access`] converts one word of the bus into the bank's bytes and decides which
 //! words belong to one snapshot. See `docs/bus.md`.
 
 pub mod ahb_lite;
@@ -34,29 +34,29 @@ pub enum HostBus {
     Spi,
     /// Asynchronous bus with eight registers of 16 bits.
     Parallel,
-    /// Nothing: one encoder port with its signals, no registers.
+    /// No bus: one encoder port with its signals, no registers.
     Bare,
 }
 
-/// Facts of a bus.
+/// Properties of a bus.
 #[derive(Clone, Copy, Debug)]
 pub struct BusRow {
     /// Name in a configuration.
     pub name: &'static str,
-    /// The same in words.
+    /// Description.
     pub means: &'static str,
-    /// Where its signals go.
+    /// Place of its signals.
     pub place: Place,
 }
 
-/// Where the signals of a bus go.
+/// Place of the signals of a bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// To pins of a board.
     Pins,
-    /// They stay inside the chip, at addresses of a system.
+    /// Inside the chip, at addresses of a system.
     System,
-    /// They stay inside the chip, without addresses.
+    /// Inside the chip, without addresses.
     Inside,
 }
 
@@ -65,7 +65,7 @@ const fn row(name: &'static str, means: &'static str, place: Place) -> BusRow {
 }
 
 impl HostBus {
-    /// Every bus, in the order of the documentation.
+    /// All buses, in the order of the documentation.
     pub const ALL: [Self; 8] = [
         Self::Uart,
         Self::Apb,
@@ -77,7 +77,7 @@ impl HostBus {
         Self::Bare,
     ];
 
-    /// Its facts.
+    /// Properties of the bus.
     pub const fn row(self) -> BusRow {
         use Place::{Inside, Pins, System};
         match self {
@@ -110,12 +110,12 @@ impl HostBus {
         Self::ALL.into_iter().find(|bus| bus.name() == name)
     }
 
-    /// Whether its signals stay inside the chip, so that no board has pins for them.
+    /// True if its signals stay inside the chip, so that no board has pins for them.
     pub const fn is_internal(self) -> bool {
         !matches!(self.row().place, Place::Pins)
     }
 
-    /// Whether the registers have addresses of a system there.
+    /// True if the registers have addresses in a system.
     pub const fn has_base(self) -> bool {
         matches!(self.row().place, Place::System)
     }

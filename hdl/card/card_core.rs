@@ -1,4 +1,4 @@
-//! Core of a card: encoder ports, each for EnDat or T-format, triggers and registers. A front connects the registers to a host:
+//! Core of a card: encoder ports, triggers and registers. A front connects the registers to a host:
 //! [`Card`](super::Card) with a UART, the tops in [`super::bus`] with another bus.
 //!
 //! ```text
@@ -9,11 +9,11 @@
 //!               |     ChannelRegisters 0, 1
 //!               |             ^
 //!               +------- RegisterBank <-> the front: word_address, access, read_byte, done, ...
-//!               +--> Stream, if there is one: sets of results, by register or pushed through the front
-//!               +--> DirectOutput 0, 1, Interrupt, if there are any: to logic and a processor in the same device
+//! +--> Stream (optional): sets of results, by register or pushed through the front
+//! +--> DirectOutput 0, 1, Interrupt (optional): to logic and a processor in the same device
 //! ```
 //!
-//! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
+//! `led_status_o` blinks slowly if every channel is good, quickly if the last result of one is an error;
 //! `led_channelN_o` is on while the channel's last result is a good position.
 
 use crate::card::channel_registers::ChannelRegisters;
@@ -39,7 +39,7 @@ use parts::{blink_bit, channel_triggers, port, served_channels};
 
 pub use parts::{bare_port, service_times, services};
 
-/// The card but for its front; the number of channels is that of [`CardConfig::channels`].
+/// The card without its front; [`CardConfig::channels`] sets the number of channels.
 #[derive(LogicBlock, Block)]
 pub struct CardCore {
     /// System clock.
@@ -53,16 +53,16 @@ pub struct CardCore {
     /// A front's access to the register bank.
     #[bundle]
     pub front: AccessIn,
-    /// Frames of the stream that are sent without being asked for; all low without a stream.
+    /// Unrequested frames of the stream; all low without a stream.
     #[bundle]
     pub pushed: PushOut,
     /// Cropped position of the channel, for logic in the same device.
     pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
-    /// The cropped position is that of the last result.
+    /// The cropped position belongs to the last result.
     pub direct_valid_o: Vec<Signal<Out, Bit>>,
     /// Strobe: the cropped position is new.
     pub direct_fresh_o: Vec<Signal<Out, Bit>>,
-    /// The last result's cause is one of those selected, or the alarm.
+    /// The cause of the last result is selected as an error, or the alarm is.
     pub direct_error_o: Vec<Signal<Out, Bit>>,
     /// Interrupt; low without this part.
     pub irq_o: Signal<Out, Bit>,
@@ -75,7 +75,7 @@ pub struct CardCore {
     /// Second interface, data to the controller; changes after the falling edge.
     #[optional]
     pub second_miso_o: Vec<Signal<Out, Bit>>,
-    /// The card drives `second_miso_o`, straight from `second_cs_n_i`.
+    /// The card drives `second_miso_o`; combinational from `second_cs_n_i`.
     #[optional]
     pub second_miso_oe: Vec<Signal<Out, Bit>>,
     /// EnDat clock to the transceiver; HIGH if the channel speaks T-format.
@@ -86,7 +86,7 @@ pub struct CardCore {
     pub endat_data_oe: Vec<Signal<Out, Bit>>,
     /// Data from the transceiver, asynchronous.
     pub endat_data_i: Vec<Signal<In, Bit>>,
-    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
+    /// Blinks: slowly = good, quickly = the last result of a channel is an error.
     pub led_status_o: Signal<Out, Bit>,
     /// The channel's last result is a good position.
     pub led_channel_o: Vec<Signal<Out, Bit>>,
@@ -95,11 +95,11 @@ pub struct CardCore {
     /// Trigger sources of the card.
     #[start]
     trigger: Trigger,
-    /// Trigger of each channel, where channels have their own.
+    /// Trigger of each channel, if channels have separate triggers.
     own_trigger: Vec<ChannelTrigger>,
     /// Trigger of each channel.
     trigger_of: Vec<Signal<Local, Bit>>,
-    /// High if the channel takes no trigger.
+    /// High if the channel ignores triggers.
     is_off: Vec<Signal<Local, Bit>>,
     /// Register bank.
     bank: RegisterBank,
@@ -107,7 +107,7 @@ pub struct CardCore {
     registers: Vec<ChannelRegisters>,
     /// Encoder port of each channel.
     port: Vec<EncoderPort>,
-    /// Result with additional data, of each channel that has them.
+    /// Result with additional data, for each channel with them.
     whole: Vec<WholeResult>,
     /// Read byte of the additional data, from the last channel down to the first.
     info_byte: Vec<Signal<Local, Bits<8>>>,
@@ -127,9 +127,9 @@ pub struct CardCore {
     set_replaced: Vec<Signal<Local, Bit>>,
     /// High for one cycle when a set is closed.
     set_taken: Vec<Signal<Local, Bit>>,
-    /// Block of the set that is asked for.
+    /// Requested block of the set.
     set_block: Vec<Signal<Local, Bits<4>>>,
-    /// Byte of that block.
+    /// Requested byte of that block.
     set_byte_at: Vec<Signal<Local, Bits<3>>>,
     /// Running clock of each channel.
     run: Vec<RunChannel>,

@@ -1,13 +1,13 @@
-//! Registers of one channel: the result as the host reads it, and the configuration.
+//! Registers of one channel: the result for the host, and the configuration.
 //!
 //! ```text
-//! channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
+//! channel's result --(load)--> held words, their age counts on --> byte of each word, of the selected word only --> OR --> read_out
 //! ring block of the channel --(ring at rest, channel not busy, no trigger)--> configuration of the channel
 //! ```
 //!
-//! The held words of all channels are loaded by the same signal, so they belong together: [`crate::card::register_bank`] says when. Words that are held for longer
-//! than a trigger show it: the age counts on while they are held, and `stale` reports a trigger that has come since. A byte that is not selected
-//! is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
+//! One signal loads the held words of all channels, so they belong together; [`crate::card::register_bank`] controls it. Words that are held for longer
+//! than a trigger show it: the age counts on, and `stale` reports a later trigger. A byte that is not selected
+//! is 0 in its register. So the read path is an OR, and the selection needs only the registers' reset.
 
 use crate::card::config_ring::ConfigRing;
 use crate::config::CardConfig;
@@ -34,9 +34,9 @@ pub struct ChannelRegisters {
     pub tick_us: Signal<In, Bit>,
     /// The channel's trigger.
     pub trigger: Signal<In, Bit>,
-    /// Strobe: some channel takes a trigger; results of another trigger than this are not waited for.
+    /// Strobe: a channel takes a trigger; the card no longer waits for results of an earlier trigger.
     pub new_set: Signal<In, Bit>,
-    /// The channel does not take a trigger; its configuration must not change.
+    /// A trigger would be lost; the configuration must not change.
     pub busy: Signal<In, Bit>,
     /// Result of a trigger.
     #[bundle]
@@ -47,15 +47,15 @@ pub struct ChannelRegisters {
     pub delay_cycles: Signal<In, Bits<11>>,
     /// The channel takes the trigger.
     pub taken: Signal<Out, Bit>,
-    /// The channel took the trigger of the last `new_set`, and its result is not there yet.
+    /// The channel took the trigger of the last `new_set`, and its result is still missing.
     pub owes: Signal<Out, Bit>,
-    /// Strobe: this result is the one that the channel owed.
+    /// Strobe: this result is the missing one.
     pub brought: Signal<Out, Bit>,
     /// The held words follow the result.
     pub load: Signal<In, Bit>,
-    /// Nothing is being read: age and `stale` of the held words go on.
+    /// No read is under way: age and `stale` of the held words are updated.
     pub show: Signal<In, Bit>,
-    /// Words that are not read, one bit per word.
+    /// Result words that are not read, one bit per word.
     pub word_skip: Signal<In, Bits<6>>,
     /// Byte of the word, 0 = most significant.
     pub lane: Signal<In, Bits<2>>,
@@ -65,19 +65,19 @@ pub struct ChannelRegisters {
     pub read_in: Signal<In, Bits<8>>,
     /// `read_in`, or this channel's byte; 2 cycles after `word_skip`.
     pub read_out: Signal<Out, Bits<8>>,
-    /// The configuration ring moves on by one byte.
+    /// The configuration ring advances by one byte.
     pub ring_turn: Signal<In, Bit>,
     /// The configuration ring is at rest, its words are in place.
     pub ring_home: Signal<In, Bit>,
     /// Byte from the following ring block, its parity in bit 8.
     pub ring_in: Signal<In, Bits<9>>,
-    /// Byte to the ring block in front.
+    /// Byte to the previous ring block.
     pub ring_out: Signal<Out, Bits<9>>,
-    /// The card's own settings are not what was written.
+    /// The card's settings differ from the written ones.
     pub card_damaged: Signal<In, Bit>,
-    /// Triggers left out after each that the channel takes; this and the next one directly from the ring.
+    /// Triggers to skip after each accepted one; this and the next output come directly from the ring.
     pub trigger_skip: Signal<Out, Bits<5>>,
-    /// Trigger sources that are not for this channel.
+    /// Trigger sources that this channel ignores.
     pub ignored_sources: Signal<Out, Bits<3>>,
     /// Settings of one channel, as the host has written them.
     #[bundle]
@@ -86,7 +86,7 @@ pub struct ChannelRegisters {
     pub request_id: Signal<Out, Bits<4>>,
     /// T-format: longest pause between two fields, in microseconds.
     pub field_gap_us: Signal<Out, Bits<3>>,
-    /// The words of the result as they are now, for the second interface; none without one.
+    /// Current words of the result, for the second interface; none without one.
     pub live: Vec<Signal<Out, Bits<32>>>,
     /// High from a trigger that the channel takes until the result of that trigger.
     waiting: Reg<Bit>,
@@ -112,7 +112,7 @@ pub struct ChannelRegisters {
     age_shown: Reg<Bits<16>>,
     /// Words of the result that the host reads; loaded together for all channels.
     held: Vec<Reg<Bits<32>>>,
-    /// Words of the result as the channel gives it now.
+    /// Current words of the result of the channel.
     word: Vec<Signal<Local, Bits<32>>>,
     /// Held words, with age and `stale`.
     shown: Vec<Signal<Local, Bits<32>>>,
@@ -164,7 +164,7 @@ impl Logic for ChannelRegisters {
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();
 
-        // A trigger that the channel does not take gives no result of its own.
+        // A trigger that is lost has no separate result.
         if self.result.result_strobe.val() {
             self.waiting.d.next = false;
         }
@@ -175,7 +175,7 @@ impl Logic for ChannelRegisters {
         self.owes.next = self.waiting.q.val() & !self.result.result_strobe.val();
         self.brought.next = self.waiting.q.val() & self.result.result_strobe.val();
 
-        // A trigger that comes with a result is newer than it.
+        // A trigger in the cycle of a result is newer than the result.
         self.newer_trigger_now.next =
             self.trigger.val() | (self.newer_trigger.q.val() & !self.result.result_strobe.val());
         self.newer_trigger.d.next = self.newer_trigger_now.val();
@@ -184,7 +184,7 @@ impl Logic for ChannelRegisters {
         self.age_full.d.next = self.age.q.val().get_bits::<15>(1).all()
             & (self.age.q.val().get_bit(0) | self.age_tick.val());
         self.age_now.next = self.age.q.val() + bit_cast::<16, 1>(self.age_tick.val().into());
-        // After the adder: `load` is known late.
+        // After the adder, because `load` arrives late in the cycle.
         if self.load.val() {
             self.stale_now.next = self.newer_trigger_now.val();
             self.age_now.next = self.result.age_us.val();
@@ -206,7 +206,7 @@ impl Logic for ChannelRegisters {
                 result.status.line
             );
         self.word[1].next = self.result.position.val().get_bits::<32>(0);
-        // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
+        // A good position has F1 = 0 and, in EnDat 2.2, F2 = 1: one bit for the presence of F2 is enough.
         self.word[2].next = place!(
             self.result.position.val().get_bits::<16>(32),
             result.position_high.value
@@ -252,7 +252,7 @@ impl Logic for ChannelRegisters {
             | place!(self.stale_shown.q.val(), result.age_recovery.stale);
         for i in 0..self._words {
             self.byte[i].clock.next = self.clock.val();
-            // A reset by deselection alone takes no logic; what a reset of the card would clear is never shown.
+            // A reset by deselection alone takes no logic; content that only a card reset would clear is never shown.
             self.byte[i].reset.next = self.word_skip.val().get_bit(i);
             match self.lane.val().index() {
                 0 => {
@@ -310,7 +310,7 @@ impl Logic for ChannelRegisters {
         self.settings.recovery_limit_cycles.next =
             field!(self.config2.q.val(), config.limits.recovery_limit_cycles);
 
-        // A channel with corrupted settings sends no command: these codes are none.
+        // A channel with corrupted settings sends no command: these codes are invalid.
         self.settings.command.next = field!(self.config0.q.val(), config.frame.command);
         self.request_id.next = field!(self.config1.q.val(), config.timing.request_id);
         if self.ring.is_damaged.val() | self.card_damaged.val() {

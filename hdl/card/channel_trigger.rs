@@ -1,12 +1,12 @@
-//! Trigger of one channel, where channels have their own: which sources it listens to, every how many triggers, whether at all.
+//! Trigger of one channel, if channels have separate triggers: ignored sources, divider, enable.
 //!
 //! ```text
 //! sources' hits --> not ignored, not disabled --> every (skip + 1)-th --> register --> trigger
 //! ring: settings --(ring at rest)-----^           ^-- restart: all channels count from here
 //! ```
 //!
-//! Channels with equal settings trigger in the same cycle: they take settings over in the same cycle, busy or not, and a write to one of
-//! these settings starts the count of all channels anew. The strobe is in the cycle of the card's.
+//! Channels with equal settings trigger in the same cycle: settings take effect in the same cycle, busy or not, and a write to one of
+//! them restarts the count of all channels. The strobe is in the cycle of the card's strobe.
 
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -26,39 +26,39 @@ pub struct ChannelTrigger {
     pub hits: Signal<In, Bits<3>>,
     /// The settings below are valid; otherwise the ring is turning.
     pub home: Signal<In, Bit>,
-    /// Sources that are not for this channel, as `hits`.
+    /// Sources that this channel ignores, as `hits`.
     pub ignored_sources: Signal<In, Bits<3>>,
-    /// Triggers left out after each that the channel takes.
+    /// Triggers to skip after each accepted one.
     pub skip: Signal<In, Bits<5>>,
-    /// The channel takes no trigger.
+    /// The channel ignores triggers.
     pub off: Signal<In, Bit>,
-    /// Strobe: the next trigger is taken, then counting begins.
+    /// Strobe: the next trigger is accepted, and counting restarts.
     pub restart: Signal<In, Bit>,
     /// One-cycle strobe to the channel, from a register.
     pub trigger: Signal<Out, Bit>,
-    /// The channel takes no trigger.
+    /// The channel ignores triggers.
     pub disabled: Signal<Out, Bit>,
     /// Sources that do not trigger this channel; copied from the ring while it is at rest.
     #[given]
     ignored: Reg<Bits<3>>,
-    /// Triggers left out after each one taken; copied from the ring while it is at rest.
+    /// Triggers to skip after each accepted one; copied from the ring while it is at rest.
     #[given]
     skipped: Reg<Bits<5>>,
-    /// High if the channel takes no trigger; copied from the ring while it is at rest.
+    /// High if the channel ignores triggers; copied from the ring while it is at rest.
     #[given]
     is_off: Reg<Bit>,
-    /// Triggers still to be left out; cleared by `restart`.
+    /// Triggers left to skip; cleared by `restart`.
     left: Reg<Bits<5>>,
     /// High for one cycle when the channel triggers.
     strobe: Reg<Bit>,
-    /// High if a source that counts for this channel has a hit.
+    /// High if an enabled source that this channel does not ignore has a hit.
     own: Signal<Local, Bit>,
-    /// High if no trigger is to be left out.
+    /// High if no trigger is left to skip.
     is_due: Signal<Local, Bit>,
 }
 
 impl ChannelTrigger {
-    /// With these settings after reset, as the inputs of the same names.
+    /// A trigger with these settings after reset, as the inputs of the same names.
     pub fn new(ignored_sources: u64, skip: u64, off: bool) -> Self {
         Self::from_parts(ChannelTriggerParts {
             ignored: Reg::new(ignored_sources.into()),

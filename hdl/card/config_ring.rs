@@ -1,4 +1,4 @@
-//! One block of configuration words on the ring: three words, a byte leaves at the front as another enters at the end.
+//! One block of configuration words on the ring: three words; each step moves a byte out at the front and another in at the end.
 //!
 //! ```text
 //!             +--------------------------- byte ring, one step in each cycle with `turn` ---------------------------+
@@ -6,11 +6,11 @@
 //! head <- [card block: word 0 .. 2] <- [channel 0: word 0 .. 2] <- ... <- [last channel] <- head, or a written byte +
 //! ```
 //!
-//! A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
-//! in place only while the ring is at rest, so the blocks work from copies that are taken then.
+//! A turn moves every byte past the one head that reads and writes, so there is no read multiplexer and no write decoder. The words are
+//! in place only while the ring is at rest, so the blocks use copies that are taken then.
 //! <!-- with has_guards -->
 //!
-//! Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
+//! Each byte is stored with its parity from the write: a bit inverted by an upset is detected until the byte is written again.
 //! <!-- end -->
 
 use rtl_design::reg::Reg;
@@ -29,11 +29,11 @@ pub struct ConfigRing {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset: the words return to their start values.
     pub reset: Signal<In, Bit>,
-    /// The ring moves on by one byte.
+    /// The ring advances by one byte.
     pub turn: Signal<In, Bit>,
     /// Byte from the following block, its parity in bit 8.
     pub byte_in: Signal<In, Bits<9>>,
-    /// Byte that goes to the block in front: the most significant one of word 0.
+    /// Byte to the previous block: the most significant one of word 0.
     pub byte_out: Signal<Out, Bits<9>>,
     /// Word 0, while the ring is at rest.
     pub word0: Signal<Out, Bits<32>>,
@@ -41,7 +41,7 @@ pub struct ConfigRing {
     pub word1: Signal<Out, Bits<32>>,
     /// Word 2, while the ring is at rest.
     pub word2: Signal<Out, Bits<32>>,
-    /// The words are not what was written, as of the last cycle in which the ring was at rest.
+    /// The words differ from the written ones, as of the last cycle in which the ring was at rest.
     pub is_damaged: Signal<Out, Bit>,
     /// Word 0 while the ring is at rest; its top byte leaves first.
     #[given]
@@ -55,7 +55,7 @@ pub struct ConfigRing {
     /// Parity of each of the twelve bytes, in the same order; 0 without guards.
     #[given]
     parities: Reg<Bits<12>>,
-    /// High if the words differ from their parities; computed while the ring is at rest.
+    /// High if the words do not match their parities; computed while the ring is at rest.
     damaged: Reg<Bit>,
     /// 1 if each byte has a parity.
     has_guards: Constant<Bit>,

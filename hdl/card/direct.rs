@@ -1,12 +1,12 @@
-//! Direct outputs: what logic in the same device takes of a channel without a bus, such as a current loop.
+//! Direct outputs: the position of a channel for logic in the same device, such as a current loop, without a bus.
 //!
 //! ```text
 //! result's position --(one bit a cycle, from first_bit on)--> shift register --(32 cycles later)--> position, fresh
 //! result's cause, alarm --(error_causes)--> error
 //! ```
 //!
-//! The bits are taken one after the other because a shift by any number of bits takes as much logic as all the rest; a
-//! frame takes longer than 32 cycles, so none is overtaken by the next.
+//! The bits are taken one after the other, because a shifter for any number of bits takes as much logic as the rest of the block. A
+//! frame takes longer than 32 cycles, so the next result always comes later.
 
 use crate::regs::{DIRECT, ERROR_CAUSES};
 use endat_macros::kernel;
@@ -24,7 +24,7 @@ pub struct DirectOutput {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: a new result is there.
+    /// Strobe: a new result is valid.
     pub result_strobe: Signal<In, Bit>,
     /// Last good position.
     pub position: Signal<In, Bits<48>>,
@@ -44,15 +44,15 @@ pub struct DirectOutput {
     pub write: Signal<In, Bit>,
     /// Word to write.
     pub write_data: Signal<In, Bits<32>>,
-    /// Byte of the word, a cycle after its address; 0 if it is none of this channel's.
+    /// Byte of the word, a cycle after its address; 0 for words of other blocks.
     pub read_byte: Signal<Out, Bits<8>>,
     /// Cropped position, zeros above its length.
     pub direct_position: Signal<Out, Bits<32>>,
-    /// `direct_position` is that of the last result; low from a result on until its own is there, and after a bad one.
+    /// `direct_position` belongs to the last result; low from a result until its position is cropped, and after a bad one.
     pub direct_valid: Signal<Out, Bit>,
     /// Strobe: `direct_position` is new.
     pub direct_fresh: Signal<Out, Bit>,
-    /// The last result's cause is one of the selected ones, or the alarm is selected and on.
+    /// The cause of the last result is selected, or the alarm is selected and set.
     pub direct_error: Signal<Out, Bit>,
     /// Lowest bit of the cropped position; written by the host.
     first_bit: Reg<Bits<6>>,
@@ -62,23 +62,23 @@ pub struct DirectOutput {
     /// Causes that raise the error output, bit 0 the alarm; written by the host.
     #[start(u64::from(ERROR_CAUSES).into())]
     error_causes: Reg<Bits<32>>,
-    /// Byte that the host reads; 0 if the word is none of this channel's.
+    /// Byte for the host; 0 for words of other blocks.
     byte_read: Reg<Bits<8>>,
     /// Bits of the cropped position so far; they enter at the top.
     bits: Reg<Bits<32>>,
-    /// Cropped position that is shown.
+    /// Cropped position at the output.
     shown: Reg<Bits<32>>,
     /// Bit of the position that is taken next; stops at 63.
     at: Reg<Bits<6>>,
-    /// Bits that have been taken of the cropped position.
+    /// Bits of the cropped position taken so far.
     taken: Reg<Bits<6>>,
     /// High while a position is cropped.
     running: Reg<Bit>,
-    /// High if the shown position is that of the last result; cleared by a result.
+    /// High if the cropped position belongs to the last result; cleared by a result.
     cropped: Reg<Bit>,
-    /// High for one cycle when the shown position is new.
+    /// High for one cycle when the cropped position is new.
     strobe: Reg<Bit>,
-    /// High if the last result is an error of the selected kinds.
+    /// High if the last result counts as an error.
     error: Reg<Bit>,
     /// Position, with zeros up to bit 63.
     wide: Signal<Local, Bits<64>>,
@@ -95,7 +95,7 @@ pub struct DirectOutput {
 }
 
 impl DirectOutput {
-    /// That of channel `channel`, whose positions have `position_bits` bits.
+    /// Direct outputs of channel `channel`, whose positions have `position_bits` bits.
     pub fn new(channel: usize, position_bits: u32) -> Self {
         let first_word = DIRECT.base + DIRECT.stride * channel as u16;
         Self::from_parts(DirectOutputParts {
@@ -108,7 +108,7 @@ impl DirectOutput {
 #[kernel]
 impl Logic for DirectOutput {
     fn update(&mut self) {
-        // Two words: where the position is cropped, and what is an error.
+        // Two words: bits of the position, and selection of errors.
         self.selected.next =
             self.in_range.val() & (self.word_address.val().get_bits::<10>(1) == self.pair.val());
         self.word.next = place!(self.first_bit.q.val(), direct.crop.first_bit)
@@ -142,7 +142,7 @@ impl Logic for DirectOutput {
         }
         self.read_byte.next = self.byte_read.q.val();
 
-        // The lowest bit first: after 32 of them it is in its place.
+        // The lowest bit first: after 32 bits it is in place.
         self.wide.next = bit_cast::<64, 48>(self.position.val());
         self.next_bit.next = self.wide.val().get_bit(self.at.q.val().index())
             & (self.taken.q.val() < self.length_bits.q.val());
@@ -154,7 +154,7 @@ impl Logic for DirectOutput {
             self.at.d.next = self.at.q.val() + 1;
             self.taken.d.next = self.taken.q.val() + 1;
             if self.at.q.val().all() {
-                // There is nothing above bit 63; the place does not begin anew.
+                // No bits above 63; the index does not wrap.
                 self.at.d.next = self.at.q.val();
             }
             if self.taken.q.val() == 31 {

@@ -1,10 +1,10 @@
-//! Interrupt: one line to a processor for what happens in all channels.
+//! Interrupt: one line to a processor for the events of all channels.
 //!
 //! ```text
 //! result, error, alarm, request of each channel --> status (stays until cleared) --(mask)--> irq
 //! ```
 //!
-//! An event that comes in the cycle of its clear is not lost.
+//! An event in the cycle of its clear is not lost.
 
 use crate::regs::INTERRUPT;
 use crate::replicate::each;
@@ -20,13 +20,13 @@ pub struct Interrupt {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe, of each channel: a new result is there.
+    /// Strobe for each channel: a new result is valid.
     pub result: Vec<Signal<In, Bit>>,
-    /// Of each channel, from the cycle after `result` on: that result is an error.
+    /// For each channel, from the cycle after `result` on: the result is an error.
     pub error: Vec<Signal<In, Bit>>,
-    /// Of each channel: alarm.
+    /// For each channel: alarm.
     pub alarm: Vec<Signal<In, Bit>>,
-    /// Strobe, of each channel: the frame of a request has ended.
+    /// Strobe for each channel: the frame of a request has ended.
     pub request: Vec<Signal<In, Bit>>,
     /// Word address of an access.
     pub word_address: Signal<In, Bits<11>>,
@@ -38,17 +38,17 @@ pub struct Interrupt {
     pub write: Signal<In, Bit>,
     /// Word to write.
     pub write_data: Signal<In, Bits<32>>,
-    /// Byte of the word, a cycle after its address; 0 if it is none of these.
+    /// Byte of the word, a cycle after its address; 0 for words of other blocks.
     pub read_byte: Signal<Out, Bits<8>>,
-    /// An event that the mask lets through has not been cleared.
+    /// An enabled event is set.
     pub irq: Signal<Out, Bit>,
     /// Events that have not been cleared, 4 bits per channel; set by an event, cleared by the host.
     status: Reg<Bits<32>>,
     /// Events that interrupt; written by the host.
     mask: Reg<Bits<32>>,
-    /// High while an event that the mask lets through is set.
+    /// High while an enabled event is set.
     wants: Reg<Bit>,
-    /// Byte that the host reads; 0 if the word is not one of these.
+    /// Byte for the host; 0 for words of other blocks.
     byte_read: Reg<Bits<8>>,
     /// `result` of the cycle before, per channel.
     had_result: Vec<Reg<Bit>>,
@@ -62,7 +62,7 @@ pub struct Interrupt {
     result_event: Vec<Signal<Local, Bits<32>>>,
     /// Bit 1: a result that is an error, or became one.
     error_event: Vec<Signal<Local, Bits<32>>>,
-    /// Bit 2: the alarm has come on.
+    /// Bit 2: the alarm was set.
     alarm_event: Vec<Signal<Local, Bits<32>>>,
     /// Bit 3: the frame of a request has ended.
     request_event: Vec<Signal<Local, Bits<32>>>,
@@ -77,7 +77,7 @@ pub struct Interrupt {
 }
 
 impl Interrupt {
-    /// That of a card with `channels` channels.
+    /// The interrupt of a card with `channels` channels.
     pub fn new(channels: usize) -> Self {
         Self::from_parts(InterruptParts {
             result: each(channels),
@@ -113,7 +113,7 @@ impl Logic for Interrupt {
             if self.result[i].val() {
                 self.result_event[i].next = 1.into();
             }
-            // Each bad result, and a cause that comes after its result.
+            // Each bad result, and a cause that is reported after its result.
             self.error_event[i].next = 0.into();
             if self.error[i].val() & (self.had_result[i].q.val() | !self.had_error[i].q.val()) {
                 self.error_event[i].next = 2.into();

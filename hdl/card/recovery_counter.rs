@@ -1,12 +1,12 @@
-//! The recovery time, measured a second time apart from the channel: a counter that no frame resets, kept at the edges.
+//! Independent measurement of the recovery time: a counter that no frame resets, captured at the edges.
 //!
 //! ```text
 //! CLOCK as it goes to the pin ---------- rising edge ---> rise = counter
-//! DATA pin --> synchroniser of its own --falling edge---> fall = counter
+//! DATA pin --> separate synchroniser --falling edge---> fall = counter
 //! ```
 //!
-//! DATA falls within the answer, too, and with a long cable after the last edge of CLOCK: the last fall is the one that counts. The
-//! counters of two channels are never equal, so a control sees that it reads the one it means, and that it runs.
+//! DATA falls within the answer, too, and with a long cable after the last edge of CLOCK: only the last fall counts. The
+//! counters of two channels are never equal, so a control can check that it reads the right one, and that it runs.
 
 use crate::regs::{COUNTER_SPACING, RECOVERY};
 use endat_macros::kernel;
@@ -21,7 +21,7 @@ pub struct RecoveryCounter {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// EnDat clock, as it goes out.
+    /// EnDat clock at the output.
     pub endat_clk: Signal<In, Bit>,
     /// The receiver drives DATA.
     pub data_oe: Signal<In, Bit>,
@@ -33,7 +33,7 @@ pub struct RecoveryCounter {
     pub in_range: Signal<In, Bit>,
     /// Byte of the word, 0 = most significant.
     pub lane: Signal<In, Bits<2>>,
-    /// Byte of the word, a cycle after its address; 0 if it is none of this channel's.
+    /// Byte of the word, a cycle after its address; 0 for words of other blocks.
     pub read_byte: Signal<Out, Bits<8>>,
     /// Counts system clock cycles from reset on, and wraps; each channel starts at another value.
     #[given]
@@ -53,9 +53,9 @@ pub struct RecoveryCounter {
     level: SyncReg<Bit>,
     /// DATA one cycle before `level`.
     level_before: Reg<Bit>,
-    /// Low three bytes of the word that is read, as of the read of its first byte.
+    /// Low three bytes of the word, latched by the read of its first byte.
     held: Reg<Bits<24>>,
-    /// Byte that is read; 0 if the word is none of this channel's.
+    /// Byte for the host; 0 for words of other blocks.
     byte_read: Reg<Bits<8>>,
     /// High if DATA has fallen since the last rising edge of CLOCK and is LOW.
     is_over: Signal<Local, Bit>,
@@ -68,7 +68,7 @@ pub struct RecoveryCounter {
 }
 
 impl RecoveryCounter {
-    /// That of channel `channel`.
+    /// The recovery counter of channel `channel`.
     pub fn new(channel: usize) -> Self {
         let first_word = RECOVERY.base + RECOVERY.stride * channel as u16;
         let start = u64::from(COUNTER_SPACING) * channel as u64;
@@ -90,7 +90,7 @@ impl Logic for RecoveryCounter {
             self.fall.d.next = self.counter.q.val();
             self.fallen.d.next = true;
         }
-        // Bits of the answer may still come in, and fall, where the cable is long.
+        // With a long cable, bits of the answer may still arrive, and fall.
         self.is_over.next = self.fallen.q.val() & !self.level.q.val();
         self.clk_before.d.next = self.endat_clk.val();
         if self.endat_clk.val() & !self.clk_before.q.val() {

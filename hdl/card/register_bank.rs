@@ -1,7 +1,7 @@
-//! Register bank: the card's own words, and the decoder in front of all words.
+//! Register bank: the card's own words, and the decoder for all words.
 //!
 //! ```text
-//! access, word_address, lane --> turning: one turn of the configuration ring; other words: until their byte is there --> done
+//! access, word_address, lane --> turning: one turn of the configuration ring; other words: until their byte is ready --> done
 //!                                   |
 //!        constants ---------+       +-- the byte passing the head is read, or replaced by the one to write
 //!        trigger count -----+
@@ -9,15 +9,15 @@
 //!        results of channels+
 //! ```
 //!
-//! **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with `access` and kept until
-//! `done`; an access that comes before is not begun. Only which byte is shown follows the front: a front that changes the address reads another byte.
+//! **A front cannot stop the ring half way, nor write elsewhere.** Address and direction of an access are latched with `access` and kept until
+//! `done`; an earlier access is ignored. Only the selected byte follows the front: a front that changes the address reads another byte.
 //!
-//! Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them, and not from
-//! the first to the last result of a trigger: half of it is new, the other half is not.
+//! Results of all channels are held together. They follow the channels, except while they are read or the host holds them, and
+//! between the first and the last result of a trigger, when only some of them are new.
 //!
-//! The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it would have no
-//! end. For a host that reads in step with the triggers, so that the words may never follow between two reads,
-//! they follow as the read begins, if the second trigger has come by then. See `docs/host-link.md`.
+//! The wait for the last result ends with the next trigger that a channel takes; if the channels are never ready together it would not
+//! end. A host that reads in step with the triggers might always block the update between two reads.
+//! So the results are updated at the start of a read if the second trigger has come by then. See `docs/host-link.md`.
 
 use crate::card::config_ring::{ConfigRing, RING_BYTES};
 use crate::card::ports::{AccessIn, ServiceWordsOut};
@@ -37,21 +37,21 @@ pub struct RegisterBank {
     /// A front's access to the register bank.
     #[bundle]
     pub front: AccessIn,
-    /// One-cycle strobe: the access begins, in the cycle of `access`.
+    /// One-cycle strobe: an access begins, in the cycle of `access`.
     pub begins: Signal<Out, Bit>,
-    /// Word address of the access that begins or is being carried out.
+    /// Word address of the access that begins or is under way.
     pub address: Signal<Out, Bits<11>>,
-    /// Its `in_range`.
+    /// `in_range` of the access.
     pub is_inside: Signal<Out, Bit>,
     /// Strobe: a channel takes a trigger.
     pub taken: Signal<In, Bit>,
-    /// A channel owes a result of the last trigger that was taken.
+    /// A result of the last accepted trigger is missing.
     pub owes: Signal<In, Bit>,
-    /// Strobe: a channel has brought its result of that trigger.
+    /// Strobe: a channel has delivered its result of that trigger.
     pub brought: Signal<In, Bit>,
     /// The held results follow the channels.
     pub load: Signal<Out, Bit>,
-    /// Nothing is being read: age and `stale` of the held results go on.
+    /// No read is under way: age and `stale` of the held results are updated.
     pub show: Signal<Out, Bit>,
     /// Result words that are not read, one bit per word.
     pub word_skip: Signal<Out, Bits<6>>,
@@ -59,7 +59,7 @@ pub struct RegisterBank {
     pub channel_skip: Signal<Out, Bits<8>>,
     /// Result byte of the channels.
     pub channel_byte: Signal<In, Bits<8>>,
-    /// The configuration ring moves on by one byte.
+    /// The configuration ring advances by one byte.
     pub ring_turn: Signal<Out, Bit>,
     /// The configuration ring is at rest.
     pub ring_home: Signal<Out, Bit>,
@@ -67,14 +67,14 @@ pub struct RegisterBank {
     pub ring_in: Signal<In, Bits<9>>,
     /// Byte to the last channel's ring block.
     pub ring_out: Signal<Out, Bits<9>>,
-    /// The card's own settings are not what was written.
+    /// The card's settings differ from the written ones.
     pub is_damaged: Signal<Out, Bit>,
-    /// Words that are not the bank's own.
+    /// Access to words of services, line monitors and ports of other protocols.
     #[bundle]
     pub service: ServiceWordsOut,
-    /// The word is one of the stream's four.
+    /// The word belongs to the stream.
     pub stream_selected: Signal<Out, Bit>,
-    /// Byte that was read from the words of stream, direct outputs and interrupt; 0 if it is none of them.
+    /// Byte read from the words of stream, direct outputs and interrupt; 0 for other words.
     pub part_byte: Signal<In, Bits<8>>,
     /// Triggers since reset.
     pub trigger_count: Signal<In, Bits<32>>,
@@ -84,9 +84,9 @@ pub struct RegisterBank {
     pub calibrate: Signal<Out, Bits<8>>,
     /// Enabled trigger sources.
     pub sources: Signal<Out, Bits<3>>,
-    /// Channels that take no trigger, directly from the ring.
+    /// Channels that ignore triggers, directly from the ring.
     pub disabled: Signal<Out, Bits<8>>,
-    /// Strobe: a word with settings of triggers has been written.
+    /// Strobe: a word with trigger settings has been written.
     pub restart: Signal<Out, Bit>,
     /// Period of the trigger timer.
     pub period_cycles: Signal<Out, Bits<24>>,
@@ -107,7 +107,7 @@ pub struct RegisterBank {
     turn: Reg<Bit>,
     /// High while a byte of the accessed configuration word is at the head.
     passes: Reg<Bit>,
-    /// High while the byte of `passes` is the one that the front asks for.
+    /// High while the byte of `passes` is the byte that the front selects.
     byte_passes: Reg<Bit>,
     /// High for one cycle after the last cycle of `turning`.
     ended: Reg<Bit>,
@@ -252,7 +252,7 @@ pub struct RegisterBank {
     calibrate_at: Constant<Bits<9>>,
 }
 
-/// Bytes of the configuration ring of a card with `channels` channels; an access takes that many cycles and a few.
+/// Bytes of the configuration ring of a card with `channels` channels; an access takes slightly more cycles than that.
 pub const fn ring_bytes(channels: usize) -> usize {
     RING_BYTES * (channels + 1)
 }

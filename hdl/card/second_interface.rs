@@ -1,16 +1,16 @@
-//! Second interface: what the channels have to say, for a second controller, over an SPI of its own that can only be read.
+//! Second interface: the results of the channels for a second controller, over a separate read-only SPI.
 //!
 //! ```text
 //! cs_n  ~~\__________________________________________________________________/~~
 //! miso    5E c r r | hash | 8 words of channel 0 | 0 . k k | 8 words of channel 1 | 1 . k k | 0 ...
-//!         ^ all channels are taken here, in one cycle
+//! ^ all channels are latched here, in one cycle
 //! ```
 //!
-//! Mode 0, 32 bits to a word, most significant first. `c` channels; `r r` counts what has been read before, so that an answer is never the one
-//! before. The words are those of the register block `result`; they are followed by the channel's number and `k k`, CRC-16/CCITT-FALSE (polynomial
-//! 0x1021, start 0xFFFF) over everything since the check sum before. The controller may stop anywhere.
+//! Mode 0, 32-bit words, most significant bit first. `c` channels; `r r` counts completed reads, so that two consecutive answers always
+//! differ. The words are those of the register block `result`, followed by the channel's number and `k k`: CRC-16/CCITT-FALSE (polynomial
+//! 0x1021, start 0xFFFF) over everything since the previous check sum. The controller may stop anywhere.
 //!
-//! Nothing that comes in here reaches the card but clock and select: whatever the second controller does, the first one does not see it.
+//! Only clock and select enter the card here, so the second controller cannot affect the first one.
 
 pub mod record;
 
@@ -20,13 +20,13 @@ use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
-/// What begins an answer.
+/// First byte of an answer.
 pub const MARK: u8 = 0x5E;
 
-/// Words of a channel, its check sum not counted.
+/// Words of a channel, without its check sum.
 pub const RECORD_WORDS: usize = RESULT.registers.len();
 
-/// What is on the line.
+/// Word on the line.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum SecondState {
     /// Mark, channels, count.
@@ -37,7 +37,7 @@ pub enum SecondState {
     Record,
     /// Number of the channel, check sum.
     CheckSum,
-    /// Nothing more.
+    /// No more words.
     Rest,
 }
 
@@ -54,15 +54,15 @@ pub struct SecondInterface {
     pub cs_n: Signal<In, Bit>,
     /// Data to the controller; changes after the falling edge.
     pub miso: Signal<Out, Bit>,
-    /// The card drives `miso`, straight from `cs_n`.
+    /// The card drives `miso`; combinational from `cs_n`.
     pub miso_enable: Signal<Out, Bit>,
-    /// Strobe: the records take what the channels have to say.
+    /// Strobe: the records latch the results of the channels.
     pub take: Signal<Out, Bit>,
     /// Channel whose word is next.
     pub channel: Signal<Out, Bits<4>>,
-    /// The next word of it; following the last one that of the check sum.
+    /// Next word of the channel; after the last one the check sum.
     pub word_at: Signal<Out, Bits<4>>,
-    /// That word.
+    /// Value of that word.
     pub word: Signal<In, Bits<32>>,
     /// Serial clock, first synchroniser stage.
     sck_0: SyncReg<Bit>,
@@ -79,7 +79,7 @@ pub struct SecondInterface {
     /// Word on the line.
     #[start(SecondState::Head)]
     state: Reg<SecondState>,
-    /// Bits of the word that the controller has taken.
+    /// Bits of the word sent so far.
     bit_count: Reg<Bits<5>>,
     /// CRC since the last check sum.
     #[start(0xffffu64.into())]
@@ -90,7 +90,7 @@ pub struct SecondInterface {
     reads: Reg<Bits<16>>,
     /// Channel whose word is sent next.
     channel_at: Reg<Bits<4>>,
-    /// Word of the record that is sent next; following the last one the check sum.
+    /// Word of the record that is sent next; after the last one the check sum.
     next_word: Reg<Bits<4>>,
     /// High for one cycle at a rising edge of the serial clock.
     rise: Signal<Local, Bit>,
@@ -100,7 +100,7 @@ pub struct SecondInterface {
     at_check_sum: Signal<Local, Bit>,
     /// Number of channels.
     channels: Constant<Bits<4>>,
-    /// Number of words in a record: the place of its check sum.
+    /// Number of words in a record: the index of its check sum.
     check_sum: Constant<Bits<4>>,
     /// First half of the first word: mark and number of channels.
     head: Constant<Bits<16>>,
@@ -111,7 +111,7 @@ pub struct SecondInterface {
 }
 
 impl SecondInterface {
-    /// That of a card with so many channels and this configuration hash.
+    /// The second interface of a card with `channels` channels and this configuration hash.
     pub fn new(channels: usize, hash: u64) -> Self {
         let head = u64::from(MARK) << 8 | channels as u64;
         Self::from_parts(SecondInterfaceParts {
@@ -145,7 +145,7 @@ impl Logic for SecondInterface {
             }
         }
 
-        // What goes out changes with the falling edge.
+        // The output changes with the falling edge.
         self.at_check_sum.next = self.next_word.q.val() == self.check_sum.val();
         if self.fall.val() {
             self.shift_out.d.next = self.shift_out.q.val() << 1;
@@ -199,7 +199,7 @@ impl Logic for SecondInterface {
         self.channel.next = self.channel_at.q.val();
         self.word_at.next = self.next_word.q.val();
         self.miso.next = self.shift_out.q.val().get_bit(31);
-        // No register: the line is free as soon as the controller lets go.
+        // Combinational: the line is free as soon as the controller releases it.
         self.miso_enable.next = !self.cs_n.val();
     }
 }

@@ -1,4 +1,4 @@
-//! Stream: the results of each trigger as one set in a buffer, for a host that wants all of them.
+//! Stream: the results of each trigger as one set in a buffer, for a host that needs all of them.
 //!
 //! ```text
 //! trigger, time stamp, count --> set under way --(all channels have their result, or the next trigger)--> closed set
@@ -8,8 +8,8 @@
 //! host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
 //! ```
 //!
-//! `docs/stream.md` has the format of a set and of a frame. A set that is closed is taken whole in one cycle, then written in its own
-//! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
+//! `docs/stream.md` has the format of a set and of a frame. A closed set is latched in one cycle, then written
+//! to the buffer. If the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 
 use crate::card::ports::PushOut;
 use crate::replicate::each;
@@ -39,41 +39,41 @@ pub struct Stream {
     pub timestamp: Signal<In, Bits<32>>,
     /// A channel that took the trigger has no result yet.
     pub owes: Signal<In, Bit>,
-    /// The result of a channel has been replaced by another one.
+    /// A later result has replaced a channel's result.
     pub replaced: Signal<In, Bit>,
-    /// Strobe: the channels keep what belongs to the set.
+    /// Strobe: the channels latch their part of the set.
     pub take_set: Signal<Out, Bit>,
-    /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
+    /// Requested 8 bytes of the set: 0 = head, n + 1 = channel n.
     pub block: Signal<Out, Bits<4>>,
-    /// Which of them.
+    /// Requested byte of these.
     pub byte_at: Signal<Out, Bits<3>>,
-    /// Of channel n its other 8 bytes: the additional data, where sets have them.
+    /// The other 8 bytes of channel n: the additional data, if sets have them.
     pub second: Vec<Signal<Out, Bit>>,
-    /// Sets are collected; where a running clock makes sets of its own, as the next eight.
+    /// Sets are collected. The next eight ports belong to the sets of a running clock.
     pub collects: Vec<Signal<Out, Bit>>,
-    /// The channel whose turn it is.
+    /// Channel whose running clock is polled.
     pub run_turn: Vec<Signal<Out, Bits<3>>>,
-    /// A position of its running clock waits.
+    /// A position of its running clock is waiting.
     pub run_ready: Vec<Signal<In, Bit>>,
-    /// Number of its result.
+    /// Number of that result.
     pub run_sequence: Vec<Signal<In, Bits<16>>>,
     /// Time of the trigger, in system clock cycles.
     pub run_timestamp: Vec<Signal<In, Bits<32>>>,
-    /// First byte of its set.
+    /// First byte of that set.
     pub run_head: Vec<Signal<In, Bits<8>>>,
     /// Place of its channel in a set.
     pub run_place: Vec<Signal<In, Bits<7>>>,
-    /// Strobe: it is taken.
+    /// Strobe: the position is taken.
     pub run_take: Vec<Signal<Out, Bit>>,
-    /// A position of a running clock has been lost.
+    /// A position of a running clock was lost.
     pub run_lost: Vec<Signal<In, Bit>>,
-    /// Strobe: one of those has been counted.
+    /// Strobe: a lost position has been counted.
     pub run_counted: Vec<Signal<Out, Bit>>,
-    /// That byte of the channels.
+    /// Requested byte from the channels.
     pub channel_byte: Signal<In, Bits<8>>,
-    /// The word that is accessed is one of the stream's.
+    /// The accessed word belongs to the stream.
     pub selected: Signal<In, Bit>,
-    /// Which of its four words: control, state, data, clear.
+    /// Word of the stream: control, state, data, clear.
     pub word: Signal<In, Bits<2>>,
     /// Byte of the word, 0 = most significant.
     pub lane: Signal<In, Bits<2>>,
@@ -83,9 +83,9 @@ pub struct Stream {
     pub write: Signal<In, Bit>,
     /// Low bits of the word to write.
     pub write_data: Signal<In, Bits<2>>,
-    /// Byte that was read, from the cycle after `access` on; 0 if the word is not one of the stream's.
+    /// Byte read, from the cycle after `access` on; 0 for words of other blocks.
     pub read_byte: Signal<Out, Bits<8>>,
-    /// Frames of the stream that are sent without being asked for; all low without a stream.
+    /// Unrequested frames of the stream; all low without a stream.
     #[bundle]
     pub pushed: PushOut,
     buffer: FrameBuffer,
@@ -97,7 +97,7 @@ pub struct Stream {
     push_on: Reg<Bit>,
     /// High from a trigger until its set is closed or counted as lost.
     open: Reg<Bit>,
-    /// High in the first cycle after a trigger: the trigger count is not up to date before.
+    /// High in the first cycle after a trigger, before the trigger count is up to date.
     first: Reg<Bit>,
     /// High if a result of the open set has been replaced by another; cleared by a trigger.
     spoilt: Reg<Bit>,
@@ -115,11 +115,11 @@ pub struct Stream {
     lost_before: Reg<Bits<8>>,
     /// Sets lost since the host cleared the count, up to 65535.
     lost_all: Reg<Bits<16>>,
-    /// Byte of the head that is asked for; 0 while another block is.
+    /// Requested byte of the head; 0 for other blocks.
     head_byte: Reg<Bits<8>>,
-    /// Low three bytes of the state word, as of the read of its first byte.
+    /// Low three bytes of the state word, latched by the read of its first byte.
     state_held: Reg<Bits<24>>,
-    /// Byte that the host reads; 0 if the word is not one of the stream's.
+    /// Byte for the host; 0 for words of other blocks.
     byte_read: Reg<Bits<8>>,
     /// High from a clear by the host until the buffer is empty: its bytes are discarded.
     flush: Reg<Bit>,
@@ -143,7 +143,7 @@ pub struct Stream {
     wanted: Signal<Local, Bit>,
     /// High if the open set can be written: it fits into the buffer, and no result was replaced.
     good: Signal<Local, Bit>,
-    /// High for one cycle when a set is closed and taken for writing.
+    /// High for one cycle when a set is closed and latched for writing.
     take_now: Signal<Local, Bit>,
     /// High for one cycle when a set is lost.
     lost_now: Signal<Local, Bit>,
@@ -155,7 +155,7 @@ pub struct Stream {
     bus_may: Signal<Local, Bit>,
     /// High for one cycle when the host takes a byte from the data word.
     bus_take: Signal<Local, Bit>,
-    /// High if the next byte is discarded: after a clear, or the rest of a frame that was partly read.
+    /// High if the next byte is discarded: after a clear, or in the rest of a frame that was partly read.
     skip: Signal<Local, Bit>,
     /// High for one cycle when a byte leaves the buffer.
     take: Signal<Local, Bit>,
@@ -171,14 +171,14 @@ pub struct Stream {
 
 /// Type of a set of positions, in the upper half of its first byte.
 pub const SET_TYPE: u64 = 1;
-/// Type of one with additional data.
+/// Type of a set with additional data.
 pub const INFO_SET_TYPE: u64 = 2;
-/// Type of one with a position of a running clock.
+/// Type of a set with a position of a running clock.
 pub const RUN_SET_TYPE: u64 = 3;
 
 impl Stream {
-    /// A stream with a buffer of `bytes` bytes (one of [`buffer::BUFFER_BYTES`]) for `channels` channels, with `collect` and `push` as
-    /// they are after reset; `parts` is what sets have.
+    /// A stream with a buffer of `bytes` bytes (one of [`buffer::BUFFER_BYTES`]) for `channels` channels, with `collect` and `push`
+    /// after reset; `parts` selects the content of sets.
     pub fn new(bytes: u64, channels: usize, collect: bool, push: bool, parts: SetParts) -> Self {
         let (seconds, runs) = (usize::from(parts.additional_data), usize::from(parts.runs));
         let set_type = if parts.additional_data {
@@ -229,7 +229,7 @@ impl Logic for Stream {
         self.push();
     }
 
-    /// The set under way. The number of its trigger is there a cycle after the trigger.
+    /// Closes the set under way. The number of its trigger is valid a cycle after the trigger.
     fn close_set(&mut self) {
         self.first.d.next = self.trigger.val();
         if self.trigger.val() {
@@ -272,7 +272,7 @@ impl Logic for Stream {
         }
     }
 
-    /// A position of a running clock, when no set of a trigger wants the buffer, one channel after the other.
+    /// Stores a position of a running clock when no set of a trigger needs the buffer, one channel after the other.
     fn take_run(&mut self) {
         for i in 0..self._runs {
             connect!(self.turn[i] <= self; clock, reset);
@@ -289,7 +289,7 @@ impl Logic for Stream {
             self.is_run[i].d.next = self.is_run[i].q.val();
             self.head_taken[i].d.next = self.head_taken[i].q.val();
             self.place_taken[i].d.next = self.place_taken[i].q.val();
-            // A waiting channel keeps its turn until it is taken: otherwise the channel following unused turns would get most of the room.
+            // A waiting channel keeps its turn until it is served; otherwise the channel after unused turns would get most of the buffer.
             if self.run_now[i].val() | !self.run_ready[i].val() {
                 self.turn[i].d.next = self.turn[i].q.val() + 1;
             }
@@ -306,7 +306,7 @@ impl Logic for Stream {
                 self.time_taken.d.next = self.run_timestamp[i].val();
                 self.lost_taken.d.next = self.lost_before.q.val();
             }
-            // One is counted in a cycle.
+            // One is counted in each cycle.
             self.run_counts[i].next =
                 self.run_lost[i].val() & !self.lost_now.val() & !self.take_now.val();
             if self.run_counts[i].val() & !self.lost_before.q.val().all() {
@@ -422,7 +422,7 @@ impl Logic for Stream {
         self.read_byte.next = self.byte_read.q.val();
     }
 
-    /// The other end. A frame goes one way from its first byte to its last.
+    /// The read side. A frame leaves entirely through one path, register or push.
     fn push(&mut self) {
         self.pushed.push.next = self.push_on.q.val();
         self.pushed.in_frame.next = self.pushing.q.val();
@@ -430,7 +430,7 @@ impl Logic for Stream {
         self.pushed.push_valid.next = self.buffer.ready.val()
             & (self.pushing.q.val()
                 | (self.push_on.q.val() & !self.mid_frame.q.val() & !self.flush.q.val()));
-        // What a clear throws away, or is left of a frame that the host read half of.
+        // Discards the bytes cleared by the host, or the rest of a frame that it read partly.
         self.skip.next = self.buffer.ready.val()
             & !self.pushing.q.val()
             & (self.flush.q.val() | (self.push_on.q.val() & self.mid_frame.q.val()));
@@ -443,7 +443,7 @@ impl Logic for Stream {
         if self.pushed.push_take.val() {
             self.pushing.d.next = self.more.val();
         }
-        // An upset: nothing is left of a frame, and answers would wait for its end for ever.
+        // After an upset: no byte of the frame is left, and answers would wait for its end for ever.
         if self.pushing.q.val() & !self.buffer.waiting_bytes.val().any() {
             self.pushing.d.next = false;
         }

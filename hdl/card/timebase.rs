@@ -36,7 +36,7 @@ pub struct Timebase {
     last_count: Constant<Bits<8>>,
 }
 
-/// System clock cycles in a microsecond, to the nearest cycle and within what the counter can divide.
+/// System clock cycles in a microsecond, to the nearest cycle and within the range of the counter.
 pub const fn cycles_per_us(system_hz: u64) -> u64 {
     let cycles = (system_hz + 500_000) / 1_000_000;
     if cycles < 1 {

@@ -1,10 +1,10 @@
-//! The top of a card: the pins that every card has, and the core behind a front. A front adds its own pins.
+//! The top of a card: the pins that every card has, and the core with a front. A front adds its own pins.
 
-/// A top: core, front, and who is connected to whom.
+/// A top: core, front, and their connections.
 ///
-/// Pins of the front are in groups, inputs and outputs, in the order in which they are emitted, each with the front's name for it. Frames of the
-/// stream go out through the front's bundle that `pushed` names; `silent` where it has none. Without both it is a bus whose front needs nothing to
-/// begin.
+/// Pins of the front are in groups, inputs and outputs, in the order of emission, each with the front's name for it. `pushed` names the front's bundle for frames of the
+/// stream; `silent` means that it has none. A call without both is a bus whose front needs no extra
+/// arguments.
 macro_rules! card_top {
     (
         $(#[$($about:tt)*])*
@@ -31,11 +31,11 @@ macro_rules! card_top {
             )*
             /// Cropped position of the channel, for logic in the same device.
             pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
-            /// The cropped position is that of the last result.
+            /// The cropped position belongs to the last result.
             pub direct_valid_o: Vec<Signal<Out, Bit>>,
             /// Strobe: the cropped position is new.
             pub direct_fresh_o: Vec<Signal<Out, Bit>>,
-            /// The last result's cause is one of those selected, or the alarm.
+            /// The cause of the last result is selected as an error, or the alarm is.
             pub direct_error_o: Vec<Signal<Out, Bit>>,
             $(
                 /// Interrupt; low without this part.
@@ -50,7 +50,7 @@ macro_rules! card_top {
             /// Second interface, data to the controller; changes after the falling edge.
             #[optional]
             pub second_miso_o: Vec<Signal<Out, Bit>>,
-            /// The card drives `second_miso_o`, straight from `second_cs_n_i`.
+            /// The card drives `second_miso_o`; combinational from `second_cs_n_i`.
             #[optional]
             pub second_miso_oe: Vec<Signal<Out, Bit>>,
             /// EnDat clock to the transceiver.
@@ -61,7 +61,7 @@ macro_rules! card_top {
             pub endat_data_oe: Vec<Signal<Out, Bit>>,
             /// EnDat data from the transceiver, asynchronous.
             pub endat_data_i: Vec<Signal<In, Bit>>,
-            /// Blinks: slowly = well, quickly = the last result of a channel is an error.
+            /// Blinks: slowly = good, quickly = the last result of a channel is an error.
             pub led_status_o: Signal<Out, Bit>,
             /// The channel's last result is a good position.
             pub led_channel_o: Vec<Signal<Out, Bit>>,
@@ -73,7 +73,7 @@ macro_rules! card_top {
         }
 
         impl $card {
-            /// This core behind this front.
+            /// Connects this core to this front.
             fn behind($front: $kind, core: CardCore) -> Self {
                 let channels = core.endat_clk_o.len();
                 let seconds = core.second_sck_i.len();
@@ -160,7 +160,7 @@ macro_rules! card_top {
                 Self::behind(Default::default(), CardCore::new(config))
             }
 
-            /// A card with other waits of its services, for quick tests.
+            /// A card with other waiting times of its services, for quick tests.
             pub fn with_times(
                 config: &CardConfig,
                 service: &crate::endat::service::program::ServiceTimes,

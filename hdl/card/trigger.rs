@@ -1,4 +1,4 @@
-//! Triggers: three sources, one strobe for all channels; a card whose channels have triggers of their own takes them from the same hits
+//! Triggers: three sources, one strobe for all channels. A card with separate channel triggers derives them from the same hits
 //! ([`crate::card::channel_trigger`]).
 //!
 //! ```text
@@ -7,14 +7,14 @@
 //! register strobe -----------------------------+
 //! ```
 //!
-//! Sources that coincide make one trigger. The strobe begins with the third clock edge that sees the pin high, and with the
-//! first that sees the register strobe.
+//! Sources that coincide make one trigger. The strobe begins with the third clock edge that samples the pin high, and with the
+//! first that samples the register strobe.
 
 use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Shortest period that the timer can make, in system clock cycles.
+/// Shortest period of the timer, in system clock cycles.
 pub const PERIOD_CYCLES_MIN: u64 = 4;
 /// Bits of the timer period.
 pub const PERIOD_BITS: usize = 24;
@@ -70,7 +70,7 @@ pub struct Trigger {
     timer_first: Constant<Bits<24>>,
 }
 
-/// The timer starts here because its comparison and its restart take a cycle each.
+/// Start value of the timer: its comparison and its restart take a cycle each.
 const TIMER_FIRST: u64 = 2;
 
 impl Default for Trigger {
@@ -94,7 +94,7 @@ impl Logic for Trigger {
             self.timer.q.val().get_bits::<12>(12) == self.period_cycles.val().get_bits::<12>(12);
         self.timer_hit.next = self.timer_hit_low.q.val() & self.timer_hit_high.q.val();
         self.timer.d.next = self.timer.q.val() + 1;
-        // Restarts while disabled: the first period is a whole one.
+        // Restarts while disabled, so that the first period is a whole one.
         if self.timer_hit.val() | !self.sources.val().get_bit(1) {
             self.timer.d.next = self.timer_first.val();
             self.timer_hit_low.d.next = false;

@@ -7,19 +7,19 @@
 //! strobe   ____________________________________/\_____
 //! ```
 //!
-//! A start bit that is high again at its middle was noise and is ignored; a byte whose stop bit is low is
-//! dropped and reported as `framing_error`. A line that stays low (break) gives one framing error, no bytes.
+//! A start bit that is high again at its middle is noise and is ignored. A byte whose stop bit is low is
+//! dropped and reported as `framing_error`. A line that stays low (break) gives one framing error and no bytes.
 
 use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Fewest system clock cycles in a bit that the receiver can halve and sample.
+/// Fewest system clock cycles in a bit for the receiver.
 pub const BIT_CYCLES_MIN: u64 = 8;
-/// Most system clock cycles in a bit that the counters hold.
+/// Most system clock cycles in a bit for the counters.
 pub const BIT_CYCLES_MAX: u64 = (1 << 15) - 1;
 
-/// System clock cycles in one bit, to the nearest cycle and within the limits of the counters.
+/// System clock cycles in one bit, to the nearest cycle and within the range of the counters.
 pub const fn bit_cycles(system_hz: u64, baud: u64) -> u64 {
     let cycles = (system_hz + baud / 2) / if baud == 0 { 1 } else { baud };
     if cycles < BIT_CYCLES_MIN {
@@ -31,7 +31,7 @@ pub const fn bit_cycles(system_hz: u64, baud: u64) -> u64 {
     }
 }
 
-/// Deviation of the rate that `bit_cycles` makes from `baud`, in parts per million.
+/// Deviation of the rate with `bit_cycles` from `baud`, in parts per million.
 pub fn baud_error_ppm(system_hz: u64, baud: u64, bit_cycles: u64) -> f64 {
     crate::endat::timing::deviation_ppm(system_hz as f64 / bit_cycles as f64, baud as f64)
 }
@@ -72,7 +72,7 @@ pub struct UartReceiver {
     /// Bits received so far, the last one at the top; a marker bit falls out with the stop bit.
     #[start(MARKER.into())]
     shift: Reg<Bits<10>>,
-    /// High for one cycle when a whole byte has come.
+    /// High for one cycle when a whole byte has been received.
     good: Reg<Bit>,
     /// High for one cycle when a byte ended with a LOW stop bit.
     bad: Reg<Bit>,
@@ -142,7 +142,7 @@ impl Logic for UartReceiver {
         if !self.active.q.val() {
             self.shift.d.next = self.marker.val();
             self.sample.d.next = false;
-            // An edge, not a level: a line held low is not a row of start bits.
+            // An edge, not a level: a line held low is not a series of start bits.
             self.active.d.next = self.previous.q.val() & !self.sync1.q.val();
             self.in_start_bit.d.next = true;
         }
@@ -160,11 +160,11 @@ pub struct UartTransmitter {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Byte to send; held while `valid` is high and `accept` has not come.
+    /// Byte to send; held while `valid` is high until `accept`.
     pub data: Signal<In, Bits<8>>,
-    /// `data` shall be sent.
+    /// `data` is to be sent.
     pub valid: Signal<In, Bit>,
-    /// High for one cycle: `data` has been taken.
+    /// High for one cycle: `data` has been accepted.
     pub accept: Signal<Out, Bit>,
     /// Serial line, idle HIGH, from a register.
     pub tx: Signal<Out, Bit>,
@@ -201,7 +201,7 @@ impl UartTransmitter {
 #[kernel]
 impl Logic for UartTransmitter {
     fn update(&mut self) {
-        // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
+        // Bits begin on a fixed grid, so that a byte is loaded in a step of the shift register.
         self.hit.next = self.count.q.val() == self.last_count.val();
         self.count.d.next = self.count.q.val() + 1;
         if self.hit.val() {
@@ -209,7 +209,7 @@ impl Logic for UartTransmitter {
         }
         self.bit_end.d.next = self.hit.val();
 
-        // Only the stop bit is left, and it stays until there is something to send.
+        // Only the stop bit is left, and it stays until the next byte.
         self.empty.d.next = !self.shift.q.val().get_bits::<9>(1).any();
         self.take.next = self.bit_end.q.val() & self.empty.q.val() & self.valid.val();
         if self.bit_end.q.val() & !self.empty.q.val() {
@@ -249,7 +249,7 @@ mod tests {
         (bytes, errors)
     }
 
-    /// Levels of `bytes` at a sender whose bits last `bit` cycles and whose first edge comes `phase` cycles late.
+    /// Levels of `bytes` from a sender whose bits last `bit` cycles and whose first edge comes `phase` cycles late.
     fn line(bytes: &[u8], bit: f64, phase: f64) -> Vec<bool> {
         let mut bits = Vec::new();
         for byte in bytes {
@@ -303,7 +303,7 @@ mod tests {
         let mut uut = receiver(16);
         let mut levels = vec![true; 40];
         levels[10..15].fill(false);
-        // A byte directly after it is not spoilt.
+        // A byte directly after it is received correctly.
         levels.truncate(24);
         levels.extend(line(&[0xa5], 16.0, 0.0));
         assert_eq!(receive(&mut uut, levels), (vec![0xa5], 0));

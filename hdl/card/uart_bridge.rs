@@ -6,15 +6,15 @@
 //! answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
 //! ```
 //!
-//! Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped
-//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not move on ends after it, too.
+//! Addresses count words; every field is sent most significant byte first. The bridge drops a command that stops half way
+//! after the time-out. After a byte with a framing error within a command it ignores everything until then. An answer that stalls ends after the time-out, too.
 //!
-//! Between answers it pushes the frames of a [`crate::card::stream::Stream`], each in one piece; an answer then begins with 0xFF.
+//! Between answers it pushes the frames of a [`crate::card::stream::Stream`], each without interruption; an answer then begins with 0xFF.
 //!
-//! With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
+//! The time-out also stops reading: a late byte would meet the next command, and would be written if that one writes.
 //!
-//! A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
-//! waits, the second one comes later than any turn ends.
+//! A word is written within one turn of the configuration ring, which may take longer than the first byte of the next word. That byte
+//! waits; the second one arrives after the end of any turn.
 //!
 //! A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
 //!
@@ -31,7 +31,7 @@ pub const TIMEOUT_US: u64 = 100_000;
 /// Bits of a register's word address; any higher address bit makes an access miss.
 pub const ADDRESS_BITS: u32 = 11;
 
-/// What the next byte means.
+/// Meaning of the next byte.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum BridgeState {
     /// Command code.
@@ -42,9 +42,9 @@ pub enum BridgeState {
     Address,
     /// Data from the host.
     Write,
-    /// Data to the host; bytes from it are dropped.
+    /// Data to the host; received bytes are dropped.
     Read,
-    /// Nothing, until the time-out.
+    /// Bytes are ignored until the time-out.
     Discard,
 }
 
@@ -65,7 +65,7 @@ pub struct UartBridge {
     /// A front's access to the register bank.
     #[bundle]
     pub bank: AccessOut,
-    /// Frames of the stream that are sent without being asked for; all low without a stream.
+    /// Unrequested frames of the stream; all low without a stream.
     #[bundle]
     pub pushed: PushIn,
     receiver: UartReceiver,
@@ -77,21 +77,21 @@ pub struct UartBridge {
     fixed: Reg<Bit>,
     /// High if the command writes.
     writing: Reg<Bit>,
-    /// Words of the command that are left, with the one under way.
+    /// Remaining words of the command, including the one under way.
     words_left: Reg<Bits<8>>,
-    /// Word address; moves on after each word unless `fixed`.
+    /// Word address; advances after each word unless `fixed`.
     address: Reg<Bits<11>>,
-    /// High if the address is beyond the map: reads give 0, writes do nothing.
+    /// High if the address is beyond the map: reads give 0, writes have no effect.
     out_of_range: Reg<Bit>,
     /// Byte of the field under way: 0 = most significant.
     byte_lane: Reg<Bits<2>>,
-    /// Word to write; moves up by a byte as bytes come in or are taken.
+    /// Word to write; shifts up by a byte as bytes arrive or are written.
     data: Reg<Bits<32>>,
     /// Last byte received for a write, until it moves into `data`.
     next_byte: Reg<Bits<8>>,
     /// High while `next_byte` waits.
     has_byte: Reg<Bit>,
-    /// High from the start of a write until it has been carried out.
+    /// High from the start of a write until it is complete.
     write_busy: Reg<Bit>,
     /// High in the cycle after a byte of an answer was handed to the transmitter.
     sent: Reg<Bit>,
@@ -101,7 +101,7 @@ pub struct UartBridge {
     last_word: Reg<Bit>,
     /// High if no word is left.
     no_word: Reg<Bit>,
-    /// High for one cycle when the address moves on.
+    /// High for one cycle when the address advances.
     step_address: Reg<Bit>,
     /// High for one cycle before `access_strobe`.
     access_due: Reg<Bit>,
@@ -113,19 +113,19 @@ pub struct UartBridge {
     idle_us: Reg<Bits<17>>,
     /// High for one cycle when the time-out has ended the command.
     expired: Reg<Bit>,
-    /// High if the time-out starts again: a byte came or went, or no command is under way.
+    /// High if the time-out restarts: a byte was received or sent, or no command is under way.
     stop_timer: Reg<Bit>,
     /// High if the next answer begins with the mark 0xFF: pushing is on, or was since the last answer.
     marked: Reg<Bit>,
     /// High until the mark of the answer under way has been handed to the transmitter.
     marker: Reg<Bit>,
-    /// High if the next byte on the line is one of the stream, not of an answer.
+    /// High if the next byte on the line belongs to the stream, not to an answer.
     from_stream: Signal<Local, Bit>,
     /// High for one cycle when a byte of an answer is handed to the transmitter.
     answer_sent: Signal<Local, Bit>,
     /// High at the last byte of an address or word.
     last_lane: Signal<Local, Bit>,
-    /// High for one cycle when a byte of an address or word has come or gone.
+    /// High for one cycle when a byte of an address or word has been received or sent.
     next_lane: Signal<Local, Bit>,
     /// Address of the following word, with carry.
     next_address: Signal<Local, Bits<12>>,
@@ -164,10 +164,10 @@ impl Logic for UartBridge {
         self.ask();
     }
 
-    /// Answers and the stream, on one line.
+    /// Shares one line between answers and the stream.
     fn share_line(&mut self) {
         self.receiver.rx.next = self.rx.val();
-        // A frame that has begun goes first; none begins while an answer is due.
+        // A frame that has begun is finished first; none begins while an answer is due.
         self.from_stream.next =
             self.pushed.in_frame.val() | (self.state.q.val() != BridgeState::Read);
         self.transmitter.data.next = self.bank.read_byte.val();
@@ -184,17 +184,17 @@ impl Logic for UartBridge {
         if self.transmitter.accept.val() & !self.from_stream.val() {
             self.marker.d.next = false;
         }
-        // The first answer after the last frame has its mark, too: so the host knows it from a frame.
+        // The first answer after the last frame has the mark, too, so that the host can distinguish it from a frame.
         if self.pushed.push.val() {
             self.marked.d.next = true;
         }
         self.tx.next = self.transmitter.tx.val();
     }
 
-    /// What a cycle begins with.
+    /// Defaults of a cycle.
     fn begin_cycle(&mut self) {
         self.last_lane.next = self.byte_lane.q.val().all();
-        // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
+        // Bytes are tens of cycles apart, so every decision may take a few cycles, which keeps the paths short.
         self.last_word.d.next = self.words_left.q.val() == 1;
         self.no_word.d.next = !self.words_left.q.val().any();
         self.sent.d.next = self.answer_sent.val();
@@ -207,7 +207,7 @@ impl Logic for UartBridge {
         self.stop_timer.d.next = self.receiver.strobe.val();
     }
 
-    /// The order of a command.
+    /// Steps of a command.
     fn go_on(&mut self) {
         match self.state.q.val() {
             BridgeState::Command => {
@@ -266,7 +266,7 @@ impl Logic for UartBridge {
                 }
             }
             BridgeState::Read => {
-                // Without the time-out an answer would wait for ever for a byte that an upset has lost.
+                // Without the time-out an answer would wait forever for a byte that an upset has lost.
                 self.stop_timer.d.next = self.transmitter.accept.val();
                 if self.sent.q.val() {
                     self.next_lane.next = true;
@@ -287,7 +287,7 @@ impl Logic for UartBridge {
         }
     }
 
-    /// Bytes and words.
+    /// Counts bytes and words.
     fn count(&mut self) {
         if self.next_lane.val() {
             self.byte_lane.d.next = self.byte_lane.q.val() + 1;
@@ -303,7 +303,7 @@ impl Logic for UartBridge {
         }
     }
 
-    /// The address. That of a written word stays until its access has ended.
+    /// Advances the address, except during the access of a written word.
     fn step_address(&mut self) {
         // A written word keeps its address until its access has ended.
         if self.bank.done.val() & self.writing.q.val() {
@@ -337,7 +337,7 @@ impl Logic for UartBridge {
         }
     }
 
-    /// The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
+    /// Shifts the word that is being written, and keeps its bytes separate from those of the next word.
     fn take_data(&mut self) {
         if self.access_strobe.q.val() & self.writing.q.val() {
             self.write_busy.d.next = true;
@@ -358,12 +358,12 @@ impl Logic for UartBridge {
         }
     }
 
-    /// What ends a command before its time.
+    /// Ends a command early.
     fn give_up(&mut self) {
         if self.bank.done.val() & (self.state.q.val() == BridgeState::Read) {
             self.byte_ready.d.next = true;
         }
-        // What is left of an answer that was given up is not the beginning of the next one.
+        // The rest of an aborted answer is not part of the next one.
         if self.answer_sent.val() | (self.state.q.val() != BridgeState::Read) {
             self.byte_ready.d.next = false;
         }
@@ -388,7 +388,7 @@ impl Logic for UartBridge {
         }
     }
 
-    /// The access.
+    /// Starts the access.
     fn ask(&mut self) {
         self.bank.word_address.next = self.address.q.val();
         self.bank.in_range.next = !self.out_of_range.q.val();

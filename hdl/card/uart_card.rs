@@ -1,4 +1,4 @@
-//! The card with a UART: [`CardCore`] behind a [`UartBridge`].
+//! The card with a UART: [`CardCore`] with a [`UartBridge`].
 //!
 //! ```text
 //! uart_rx_i, uart_tx_o <-> UartBridge <-> CardCore <-> trigger_i, endat_*, led_*
@@ -14,7 +14,7 @@ use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 card_top! {
-    /// The whole core with a UART to the host; the number of channels is that of [`CardConfig::channels`].
+    /// The whole core with a UART to the host; [`CardConfig::channels`] sets the number of channels.
     Card, CardParts: bridge: UartBridge
     in {
         /// Serial line from the host, asynchronous.
@@ -39,7 +39,7 @@ impl Card {
         Self::with_times(config, timeout_us, &service_times(config))
     }
 
-    /// A card with other waits, too.
+    /// A card with this limit and other waiting times.
     pub fn with_times(config: &CardConfig, timeout_us: u64, service: &ServiceTimes) -> Self {
         let bridge = UartBridge::new(config.uart_bit_cycles, timeout_us);
         Self::behind(bridge, CardCore::with_times(config, service))

@@ -5,17 +5,17 @@
 //! result_in   _______________/\___________________________________
 //! is_open     _______________/~~~~~~~~~~~~~~~~~~~~~~~~~~~~\_______
 //! over        ____________________________________________/\______    additional data are captured here, once
-//! outputs     the result before, its additional data      | this frame's, both
+//! outputs     the previous result and its additional data | those of this frame
 //! ```
 //!
-//! The outputs follow the result, but not from its publication until its frame is over: then they and the additional data change in one cycle. So
-//! a reader never mixes two frames, and never waits for data that do not come: each frame has an end. Frames that measure the delay and frames
-//! of requests end without a result of their own, and change nothing.
+//! The outputs follow the result, except from its publication until its frame is over; then they and the additional data change in one cycle. So
+//! a reader never mixes two frames, and never waits for missing data: each frame has an end. Frames that measure the delay and frames
+//! of requests end without a separate result, and change nothing.
 //!
-//! The stream does not wait so long for the position: it takes the result from the channel and the additional data, or that they are still due,
-//! from here.
+//! The stream does not wait that long for the position. It takes the result from the channel, and from here the additional data, or the information
+//! that they are still due.
 //!
-//! Without the additional data (T-format) all of it is wires.
+//! Without the additional data (T-format) the block is wires only.
 
 use crate::ports::{AdditionalDataIn, FrameResultIn, FrameResultOut};
 use crate::regs::{BLOCK_STRIDE, INFO_FIRST, RESULT_BASE};
@@ -51,7 +51,7 @@ pub struct WholeResult {
     pub is_open: Signal<Out, Bit>,
     /// Additional data 1 of the newest result's frame: 24 bits, came, good, due.
     pub word_1: Signal<Out, Bits<27>>,
-    /// Additional data 2 of it.
+    /// Additional data 2 of the newest result's frame.
     pub word_2: Signal<Out, Bits<27>>,
     /// Result of a trigger.
     #[bundle]
@@ -60,17 +60,17 @@ pub struct WholeResult {
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
-    /// Words of the additional data as they are now, for the second interface; none without one.
+    /// Current words of the additional data, for the second interface; none without one.
     pub live: Vec<Signal<Out, Bits<32>>>,
-    /// The held words follow.
+    /// The held words follow the outputs.
     pub load: Signal<In, Bit>,
     /// Word address of the access.
     pub word_address: Signal<In, Bits<11>>,
-    /// It is one of the register map.
+    /// The address is inside the register map.
     pub in_range: Signal<In, Bit>,
     /// Byte of the word, 0 = most significant.
     pub lane: Signal<In, Bits<2>>,
-    /// The byte of the held additional data, 1 cycle later; 0 if another word is read.
+    /// Byte of the held additional data, 1 cycle later; 0 for other words.
     pub read_byte: Signal<Out, Bits<8>>,
     /// High from a result until its frame has ended: additional data may still come.
     open: Reg<Bit>,
@@ -116,7 +116,7 @@ pub struct WholeResult {
     held_first: Reg<Bits<31>>,
     /// Additional data 2 that the host reads.
     held_second: Reg<Bits<31>>,
-    /// Byte that the host reads; 0 if the word is none of these.
+    /// Byte for the host; 0 for other words.
     byte_read: Reg<Bits<8>>,
     /// High for one cycle when a result comes whose frame can bring additional data.
     opens: Signal<Local, Bit>,
@@ -126,9 +126,9 @@ pub struct WholeResult {
     closes: Signal<Local, Bit>,
     /// High in each cycle in which the shown result follows the channel's.
     follows: Signal<Local, Bit>,
-    /// Additional data 1 as they have come: data if the CRC is right.
+    /// Additional data 1 as received: data if the CRC is right.
     filled_1: Signal<Local, Bits<31>>,
-    /// Additional data 2 as they have come: data if the CRC is right.
+    /// Additional data 2 as received: data if the CRC is right.
     filled_2: Signal<Local, Bits<31>>,
     /// High if the address is one of these words.
     selected: Signal<Local, Bit>,
@@ -142,7 +142,7 @@ pub struct WholeResult {
 }
 
 impl WholeResult {
-    /// That of channel `channel`, which has additional data or not, on a card with a second interface or without.
+    /// The results of channel `channel`, with additional data if `has_infos`, and with a second interface if `is_shown`.
     pub fn new(channel: usize, has_infos: bool, is_shown: bool) -> Self {
         let first = RESULT_BASE + BLOCK_STRIDE * channel as u16 + u16::from(INFO_FIRST);
         Self::from_parts(WholeResultParts {
@@ -157,20 +157,20 @@ impl WholeResult {
 #[kernel]
 impl Logic for WholeResult {
     fn update(&mut self) {
-        // A frame that is given up before its position ends a cycle before its result is there; one that withdraws its position changes the
-        // result a cycle after its end.
+        // A frame aborted before its position ends one cycle before its result is valid. A frame that withdraws its position changes the
+        // result one cycle after its end.
         self.past.d.next = self.over.val();
         self.opens.next = self.result_in.result_strobe.val()
             & !self.past.q.val()
             & self.record.info_active.val().any()
             & (self.result_in.position_has_f2.val() | !self.result_in.fresh.val());
         self.open_now.next = self.open.q.val() | self.opens.val();
-        // The next frame: that of the result must have ended.
+        // The next frame has begun: that of the result must have ended.
         self.closes.next = self.open.q.val() & (self.past.q.val() | self.taken.val());
         self.open.d.next = self.open_now.val() & !self.closes.val();
         self.is_open.next = self.open_now.val();
 
-        // The content counts if its CRC is right; the CRC is shown as it came.
+        // The content is valid if its CRC is right; the CRC is shown as received.
         self.filled_1.next = (bit_cast::<31, 5>(self.record.info_crcs.val().get_bits::<5>(0))
             << 26)
             | (bit_cast::<31, 1>(self.record.info_came.val().get_bits::<1>(0)) << 24);
@@ -188,7 +188,7 @@ impl Logic for WholeResult {
                 | (bit_cast::<31, 1>(1.into()) << 25);
         }
 
-        // While nothing is open the result may still change: its cause when the frame ends, an upset at any time.
+        // While no frame is open the result may still change: its cause when the frame ends, an upset at any time.
         self.follows.next = !self.open_now.val() | self.closes.val();
         self.whole.d.next =
             (self.result_in.result_strobe.val() & !self.opens.val()) | self.closes.val();
@@ -256,7 +256,7 @@ impl Logic for WholeResult {
             self.delay_cycles.next = self.delay_cycles_kept.q.val();
         }
 
-        // For the stream: what is there may be of the result before.
+        // For the stream: the record may still hold the data of the previous result.
         self.word_1.next = 0.into();
         self.word_2.next = 0.into();
         if self.open_now.val() {

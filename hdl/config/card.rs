@@ -1,4 +1,4 @@
-//! Card requests into cycles: sampling timer and host link.
+//! Converts card requests to cycles: sampling timer and host link.
 
 use super::*;
 use crate::card::stream::buffer::{frame_bytes, frame_cycles, BUFFER_BYTES};
@@ -7,19 +7,19 @@ use crate::protocol::LEAD_PULSES;
 use crate::protocols::Spoken;
 use endat_regs::result_words;
 
-/// Where the upper limit of the UART rate comes from when it is not the system clock.
-pub const BAUD_NOTE: &str = "the most that the board passes on to the host";
+/// Source of the upper limit of the UART rate if it is not the system clock.
+pub const BAUD_NOTE: &str = "the fastest rate that the board passes on to the host";
 
-/// Fewest system clock cycles in an EnDat period with which the phase can follow while the clock goes on.
+/// Fewest system clock cycles in an EnDat period with which the phase can follow a continuous clock.
 const CONTINUOUS_PERIOD_MIN: u64 = 8;
-/// Fewest with which a position stands in its place before the first bit of additional data comes: 16 shifts in the five bits
+/// Fewest cycles in a period with which the position is stored before the first bit of additional data: 16 shifts in the five bits
 /// of the CRC.
 const REQUESTS_PERIOD_MIN: u64 = 4;
 
-/// Slowest system clock with which the program of an initialisation ends the pulse behind power-up in time, in hertz.
+/// Slowest system clock at which the initialisation program ends the pulse after power-up in time, in hertz.
 const INITIALISE_HZ_MIN: u64 = 8_000_000;
 
-/// A part that needs more cycles in a period than the channel has.
+/// A feature that needs more cycles in a period than the channel has.
 fn too_fast_for(
     index: usize,
     channel: &ChannelConfig,
@@ -39,7 +39,7 @@ fn too_fast_for(
 }
 
 impl CardDraft {
-    /// Converts and checks what is there; `Err` has every problem found, none when only something is missing.
+    /// Converts and checks the given values; `Err` has every problem found, or none if values are only missing.
     pub fn resolve(&self) -> Result<CardConfig, Vec<Problem>> {
         let mut problems = Vec::new();
         let mut check = Check {
@@ -66,7 +66,7 @@ impl CardDraft {
             good
         });
         let Some(system_hz) = clock else {
-            // Without a believable system clock every other number would only repeat this complaint.
+            // Without a valid system clock every other message would only repeat this one.
             return Err(problems);
         };
         if self.service.initialise && system_hz < INITIALISE_HZ_MIN {
@@ -80,7 +80,7 @@ impl CardDraft {
         let channels = self.resolve_channels(&mut problems, system_hz);
         let sample_period_cycles = self.check_sampling(&mut problems, system_hz, &channels);
         let uart_bit_cycles = self.check_link(&mut problems, system_hz, count);
-        // A rate that is refused itself says nothing about what fits.
+        // A rejected rate says nothing about the other limits.
         let rates = sample_period_cycles.is_some() && uart_bit_cycles.is_some();
         self.check_stream(&mut problems, system_hz, count.filter(|_| rates));
         let whole = count == Some(channels.len());
@@ -122,7 +122,7 @@ impl CardDraft {
         }
     }
 
-    /// Channels that are as they should be, with their numbers.
+    /// The valid channels, with their numbers.
     fn resolve_channels(
         &self,
         problems: &mut Vec<Problem>,
@@ -146,13 +146,13 @@ impl CardDraft {
                     let parts = [
                         (
                             self.service.requests,
-                            ("requests", "additional data take", REQUESTS_PERIOD_MIN),
+                            ("requests", "additional data need", REQUESTS_PERIOD_MIN),
                         ),
                         (
                             self.service.continuous,
                             (
                                 "continuous",
-                                "continuous clock takes",
+                                "continuous clock needs",
                                 CONTINUOUS_PERIOD_MIN,
                             ),
                         ),
@@ -191,7 +191,7 @@ impl CardDraft {
             return None;
         }
         let period = period_cycles(sample_hz, system_hz);
-        // A channel that takes one of several triggers has so much longer.
+        // A channel that takes one of several triggers has that many times as long.
         let share = |channel: &ChannelConfig| {
             let own = channel.spec.trigger.unwrap_or_default();
             let divider = own.timer_divider()?.max(1);
@@ -244,7 +244,7 @@ impl CardDraft {
         let ppm = deviation_ppm(system_hz as f64 / bit_cycles as f64, baud as f64);
         if ppm.abs() > UART_TOLERANCE_PPM as f64 {
             let nearest = (system_hz + bit_cycles / 2) / bit_cycles;
-            // Nothing is proposed that would be refused itself.
+            // The remedy must itself be valid.
             let slower = (system_hz + bit_cycles.div_ceil(2)) / (bit_cycles + 1);
             let good = [nearest, slower];
             let good = good.into_iter().find(|hz| baud_limits.contains(*hz));
@@ -285,7 +285,7 @@ impl CardDraft {
 }
 
 impl CardDraft {
-    /// Whether the buffer exists, and the sets of all triggers fit through it and onto the line.
+    /// Checks that the buffer exists, and that the sets of all triggers fit into it and onto the line.
     fn check_stream(
         &self,
         problems: &mut Vec<Problem>,
@@ -329,7 +329,7 @@ impl CardDraft {
         }
         if !BUFFER_BYTES.contains(&bytes) {
             let sizes = BUFFER_BYTES.map(|b| b.to_string()).join(", ");
-            let text = format!("no size of a buffer; use 0 (no stream), {sizes}");
+            let text = format!("not a buffer size; use 0 (no stream), {sizes}");
             check.fail("fifo_bytes", bytes, text);
         }
         if self.without_uart && self.stream.start.pushes() {
@@ -344,7 +344,7 @@ impl CardDraft {
             let most = baud / stream_baud(1, channels, additional_data);
             let baud_limits = limits("baud", Some(system_hz));
             let baud_limits = baud_limits.at_most(self.baud_max.unwrap_or(u64::MAX), BAUD_NOTE);
-            // Nothing is proposed that would be refused itself.
+            // The remedy must itself be valid.
             let faster = baud_from(needed, system_hz, &baud_limits);
             let is_rate = limits("sample_hz", Some(system_hz)).contains(most);
             let mut remedies = Vec::new();
@@ -369,24 +369,24 @@ impl CardDraft {
     }
 }
 
-/// A channel that is not ready when the next trigger comes.
+/// A channel that is not ready at the next trigger.
 #[derive(Clone, Copy)]
 pub(crate) struct TooLong {
-    /// What it takes at most.
+    /// Longest time that the channel needs.
     pub(crate) cycles: u64,
-    /// It takes one of so many triggers.
+    /// The channel takes one of `divider` triggers.
     pub(crate) divider: u64,
     pub(crate) system_hz: u64,
 }
 
 impl TooLong {
-    /// The highest rate of triggers that it takes.
+    /// The highest trigger rate that the channel supports.
     pub(crate) fn highest_hz(self) -> u64 {
         self.system_hz.saturating_mul(self.divider) / self.cycles
     }
 }
 
-/// Why a trigger would come before an EnDat channel is ready, with the shares that can be shortened, the longest first.
+/// Message for a trigger that comes before an EnDat channel is ready, with the parts that can be shortened, the longest first.
 pub(crate) fn frame_too_long(index: usize, channel: &ChannelConfig, times: TooLong) -> String {
     let system_hz = times.system_hz;
     let frame = channel.frame_time(system_hz);
@@ -428,7 +428,7 @@ pub(crate) fn frame_too_long(index: usize, channel: &ChannelConfig, times: TooLo
     )
 }
 
-/// Rounded up to nanoseconds, without needless zeros.
+/// Rounded up to nanoseconds, without trailing zeros.
 pub(crate) fn microseconds(cycles: u64, system_hz: u64) -> String {
     let ns = (u128::from(cycles) * 1_000_000_000).div_ceil(u128::from(system_hz));
     let text = format!("{}.{:03}", ns / 1_000, ns % 1_000);
@@ -441,33 +441,33 @@ impl CardConfig {
         CardDraft::from(request).resolve()
     }
 
-    /// Whether each channel has its own enable, divider and sources.
+    /// True if each channel has its own enable, divider and sources.
     pub fn own_triggers(&self) -> bool {
         self.channels.iter().any(|c| c.spec.trigger.is_some())
     }
 
-    /// Sampling rate that the timer really makes, in hertz.
+    /// Actual sampling rate of the timer, in hertz.
     pub fn actual_sample_hz(&self) -> f64 {
         self.system_hz as f64 / self.sample_period_cycles as f64
     }
 
-    /// UART rate that the core really makes, in bit/s.
+    /// Actual UART rate of the core, in bit/s.
     pub fn actual_baud(&self) -> f64 {
         self.system_hz as f64 / self.uart_bit_cycles as f64
     }
 
-    /// UART rate that reading every channel `read_hz` times a second takes, in bit/s.
+    /// UART rate for reading every channel `read_hz` times a second, in bit/s.
     pub fn needed_baud(&self) -> u64 {
         needed_baud(self.read_hz, self.channels.len(), self.service.requests)
     }
 
-    /// How often the host can read every channel over this link, in hertz.
+    /// Highest rate at which the host can read every channel over this link, in hertz.
     pub fn highest_read_hz(&self) -> f64 {
         self.actual_baud() / needed_baud(1, self.channels.len(), self.service.requests) as f64
     }
 }
 
-/// The slowest rate of a UART that is at least this fast, and that a system clock makes; none within its limits.
+/// The slowest UART rate of at least `needed` that the system clock can generate; `None` if it is outside the limits.
 fn baud_from(needed: u64, system_hz: u64, limits: &Limits) -> Option<u64> {
     let cycles = system_hz / needed.max(1);
     let made = |cycles: u64| (cycles > 0).then(|| system_hz / cycles);

@@ -1,4 +1,4 @@
-//! Channel requests into cycles, and the length of a frame.
+//! Converts channel requests to cycles, and computes the length of a frame.
 
 use super::limits::{
     cycles_at_most_ns, cycles_to_ns_up, recovery_most_ns, start_wait_ns, tcal_most_ns,
@@ -21,7 +21,7 @@ impl ChannelConfig {
         let position_good = check_one("position_bits", request.position_bits);
         let cable_good = check_one("cable_m", request.cable_m);
         let clock_good = check_one("clock_hz", request.clock_hz);
-        // What is wrong itself must not narrow what another may be.
+        // An invalid value must not narrow the limits of another one.
         let cable_m = if cable_good { request.cable_m } else { 0 };
         let calibration_good =
             !(cable_good && clock_good) || check_calibration(check, request, system_hz);
@@ -74,7 +74,7 @@ impl ChannelConfig {
         })
     }
 
-    /// Longest input filter that is worth having: an edge and the longest pulse that is removed fit into half a bit.
+    /// Longest useful input filter: an edge and the longest removed pulse fit into half a bit.
     pub const fn filter_recommended_cycles(&self) -> u64 {
         let most = (self.period_cycles / 4).saturating_sub(1);
         if most < max_of(FILTER_BITS) {
@@ -84,12 +84,12 @@ impl ChannelConfig {
         }
     }
 
-    /// Whether the encoder's recovery time is to be the short one.
+    /// True if the encoder is to be set to the short recovery time.
     pub const fn wants_short_recovery(&self) -> bool {
         self.spec.recovery_min_ns < RECOVERY_MIN_NS
     }
 
-    /// EnDat clock that the core really makes, in hertz.
+    /// Actual EnDat clock of the core, in hertz.
     pub fn actual_hz(&self, system_hz: u64) -> f64 {
         system_hz as f64 / self.period_cycles as f64
     }
@@ -120,19 +120,19 @@ impl ChannelConfig {
             return frame;
         }
         let additional_data = 2 * u64::from(INFO_BITS) * self.period_cycles;
-        // Parked half a period after the last bit, and one delay later than the receiver sees that bit.
+        // Parked half a period after the last bit, and one delay before the receiver samples that bit.
         let supplement = u64::from(SUPPLEMENT_PULSES - 1) * self.period_cycles
             + cycles_at_least(PARK_NS + self.spec.delay_max_ns(), system_hz)
             + INPUT_LATENCY_CYCLES;
         frame + additional_data + supplement
     }
 
-    /// Clock period of the frame that measures the propagation delay: never shorter than the ordinary one.
+    /// Clock period of the frame that measures the propagation delay: at least that of other frames.
     pub fn calibration_period_cycles(&self, system_hz: u64) -> u64 {
         period_cycles(self.spec.calibration_hz(), system_hz).max(self.period_cycles)
     }
 
-    /// Whether that is not the usual one.
+    /// True if that period differs from the default.
     pub fn has_own_calibration(&self, system_hz: u64) -> bool {
         let usual = calibration_period_cycles(self.spec.delay_max_ns(), system_hz);
         self.calibration_period_cycles(system_hz) != usual.max(self.period_cycles)
@@ -162,11 +162,11 @@ impl ChannelConfig {
     }
 }
 
-/// Cycles that a period of the clock that measures the delay has besides the delay: from the pin to the receiver, which must see a bit
+/// Cycles that a period of the measuring clock needs in addition to the delay: from the pin to the receiver, which must sample a bit
 /// before the next one comes.
 const CALIBRATION_FREE_CYCLES: u64 = 7;
 
-/// The clock that measures the delay: its period must hold the delay, and be one that can be timed.
+/// The clock that measures the delay: its period must be longer than the delay, and within the range of the timer.
 fn check_calibration(check: &mut Check<'_>, request: &ChannelSpec, system_hz: u64) -> bool {
     let held_ns = request.delay_max_ns() + request.filter_ns.min(1_000_000);
     let held_cycles = cycles_at_least(held_ns, system_hz) + CALIBRATION_FREE_CYCLES;
@@ -213,7 +213,7 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec, most_ns: u64) {
         let text = format!("{condition}; use {RECOVERY_MIN_NS}");
         check.fail("recovery_min_ns", low, text);
     } else if low_good && high_good && low > high {
-        // The usual shortest time may not have been written at all.
+        // The default shortest time need not be in the file.
         let (key, value, text) = match low == RECOVERY_MIN_NS {
             true if may_be_short => (
                 "recovery_max_ns",
@@ -226,7 +226,7 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec, most_ns: u64) {
                 format!("{condition}; use at least {RECOVERY_MIN_NS}"),
             ),
             false => {
-                // Nothing is proposed that would be refused itself.
+                // The remedy must itself be valid.
                 let lower = match high < RECOVERY_MIN_NS && !may_be_short {
                     true => String::new(),
                     false => format!("lower it to {high}, or "),
@@ -242,12 +242,12 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec, most_ns: u64) {
     }
 }
 
-/// Whether the shorter half of a period is too short for an encoder.
+/// True if the shorter half of a period is too short for an encoder.
 pub(crate) const fn is_uneven(period: u64) -> bool {
     100 * (period / 2) < (50 - PULSE_TOLERANCE_PERCENT) * period
 }
 
-/// The period in cycles, if the rate can be made well enough; no `double_edge` where the protocol has no such part.
+/// The period in cycles, if the rate is accurate enough; without `double_edge` if the protocol has no such feature.
 pub(crate) fn check_clock(
     check: &mut Check<'_>,
     clock_hz: u64,
@@ -258,7 +258,7 @@ pub(crate) fn check_clock(
     let (cycles_min, remedy) = match double_edge {
         Some(true) => (PERIOD_CYCLES_MIN_DOUBLE, ""),
         None => (PERIOD_CYCLES_MIN, ""),
-        // Nothing is proposed that would be refused itself.
+        // The remedy must itself be valid.
         Some(false) if period < PERIOD_CYCLES_MIN_DOUBLE => (PERIOD_CYCLES_MIN, ""),
         Some(false) => (
             PERIOD_CYCLES_MIN,
@@ -291,7 +291,7 @@ pub(crate) fn check_clock(
         let below = system_hz.div_ceil(clock_hz).max(cycles_min);
         let above = (system_hz / clock_hz).max(cycles_min);
         let rate = |cycles: u64| (system_hz + cycles / 2) / cycles;
-        // Nothing is proposed that would be refused itself.
+        // The remedy must itself be valid.
         let is_good =
             |cycles: &u64| limits("clock_hz", None).contains(rate(*cycles)) && !is_uneven(*cycles);
         let mut rates: Vec<_> = [below, above]
@@ -363,7 +363,7 @@ pub(crate) fn check_filter(
     system_hz: u64,
     whole: &str,
 ) -> u64 {
-    // Looks at DATA in a second.
+    // Samples of DATA in a second.
     let place_hz = places * system_hz;
     let cycles = cycles_at_least(request.filter_ns, place_hz);
     let longest = filter_longest(places);

@@ -1,4 +1,4 @@
-//! What each key may be, whatever the other keys say.
+//! Allowed range of each key, independent of the other keys.
 
 use super::*;
 use crate::card::channel_trigger::SKIP_BITS;
@@ -8,14 +8,14 @@ use crate::protocol::POSITION_BITS;
 use crate::protocols;
 use endat_regs::service::{ERROR_TEST_MS_MAX, ERROR_TEST_PATIENCE_MS};
 
-/// System clock cycles in the shortest period of the serial clock, behind SPI.
+/// System clock cycles in the shortest period of the serial clock, with SPI.
 pub const SCK_CYCLES_MIN: u64 = 8;
 
-/// The values that one key may have.
+/// Allowed values of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
     range: RangeInclusive<u64>,
-    /// 0 is good too, and stands for "none".
+    /// 0 is allowed, too, and means "none".
     or_zero: bool,
     note: &'static str,
 }
@@ -30,7 +30,7 @@ impl Limits {
         }
     }
 
-    /// The same with another upper end, if that is lower; `note` says where it comes from.
+    /// The same range with another upper end, if that is lower; `note` names its source.
     pub fn at_most(self, high: u64, note: &'static str) -> Self {
         match high < *self.range.end() {
             true => Self {
@@ -47,18 +47,18 @@ impl Limits {
         self.range.clone()
     }
 
-    /// Whether 0 is good, too, and stands for "none".
+    /// True if 0 is allowed, too, and means "none".
     pub const fn or_zero(&self) -> bool {
         self.or_zero
     }
 
-    /// Whether a value is good.
+    /// True if a value is allowed.
     pub fn contains(&self, value: u64) -> bool {
         self.range.contains(&value) || (self.or_zero && value == 0)
     }
 }
 
-/// What is wrong with a value outside, and the remedy.
+/// Problem of a value outside the range, and the remedy.
 impl fmt::Display for Limits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (low, high) = (self.range.start(), self.range.end());
@@ -79,7 +79,7 @@ pub fn clock_limits() -> Limits {
     Limits::new(slowest..=ENDAT_HZ_MAX)
 }
 
-/// What a key may be at this system clock, or at any when it is not known.
+/// Allowed range of a key at this system clock; `None` = at any.
 pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
     let (slow, fast) = system_hz.map_or((SYSTEM_HZ_MIN, SYSTEM_HZ_MAX), |hz| (hz, hz));
     let range = match key {
@@ -116,7 +116,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
     }
 }
 
-/// Limits of a key that fit every value of the other keys.
+/// Range of a key that is valid for every value of the other keys.
 pub fn narrowest(key: &str, system_hz: Option<u64>) -> Limits {
     let slow = system_hz.unwrap_or(SYSTEM_HZ_MAX);
     let whole = limits(key, system_hz);
@@ -129,19 +129,19 @@ pub fn narrowest(key: &str, system_hz: Option<u64>) -> Limits {
     }
 }
 
-/// Longest calculation time whose wait for the start bit can still be timed, also in the calibration frame.
+/// Longest calculation time for which the wait for the start bit fits the timer, also in the calibration frame.
 pub(super) fn tcal_most_ns(slowest_hz: u64, cable_m: u64) -> u64 {
     let wait_ns = 1_000 * (max_of(START_TIMEOUT_BITS) - 1);
     wait_ns - start_wait_ns(slowest_hz, cable_m)
 }
 
-/// How much longer than tcal a start bit may keep us waiting: cable, and two periods of the slowest frame, which may
-/// pass before a start edge is seen.
+/// Time by which the wait for a start bit may exceed tcal: cable, and two periods of the slowest frame, which may
+/// pass before a start edge is detected.
 pub(super) fn start_wait_ns(slowest_hz: u64, cable_m: u64) -> u64 {
     delay_max_ns(cable_m) + 2 * 1_000_000_000u64.div_ceil(slowest_hz)
 }
 
-/// Longest cable whose delay, and the clock that measures it, can be counted.
+/// Longest cable for which the counters hold the delay and the period of the measuring clock.
 fn cable_most_m(system_hz: u64) -> u64 {
     let counted_ns = cycles_at_most_ns(max_of(DELAY_BITS) - INPUT_LATENCY_CYCLES, system_hz);
     let measured_ns = match period_cycles(LONG_CALIBRATION_HZ, system_hz) > max_of(PERIOD_BITS) {
@@ -152,18 +152,18 @@ fn cable_most_m(system_hz: u64) -> u64 {
     CABLE_M_MAX.min(longest_ns / DELAY_NS_PER_M)
 }
 
-/// Longest recovery time that can be timed behind this cable.
+/// Longest recovery time that fits the timer with this cable.
 pub(crate) fn recovery_most_ns(system_hz: u64, cable_m: u64) -> u64 {
     let cycles = max_of(RECOVERY_LIMIT_BITS) - INPUT_LATENCY_CYCLES;
     cycles_at_most_ns(cycles, system_hz) - delay_max_ns(cable_m)
 }
 
-/// Longest whole number of ns that [`cycles_at_least`] turns into no more than `cycles`.
+/// Longest whole number of ns for which [`cycles_at_least`] gives no more than `cycles`.
 pub(super) fn cycles_at_most_ns(cycles: u64, system_hz: u64) -> u64 {
     (u128::from(cycles) * 1_000_000_000 / u128::from(system_hz.max(1))) as u64
 }
 
-/// Shortest whole number of ns that [`cycles_at_most`] turns into no fewer than `cycles`.
+/// Shortest whole number of ns for which [`cycles_at_most`] gives no fewer than `cycles`.
 pub(super) fn cycles_to_ns_up(cycles: u64, system_hz: u64) -> u64 {
     (u128::from(cycles) * 1_000_000_000).div_ceil(u128::from(system_hz.max(1))) as u64
 }

@@ -1,11 +1,11 @@
-//! The configuration of a card: what a user asks for in hertz and nanoseconds, and what the blocks get in cycles.
+//! The configuration of a card: a user's values in hertz and nanoseconds, and their conversion to cycles for the blocks.
 //!
 //! ```text
 //! CardSpec (Hz, ns, bits) --CardConfig::resolve--> CardConfig (cycles, checked) --> blocks, explain, files
 //! ```
 //!
-//! The conversion happens here and nowhere else. Every problem is reported, not only the first; each names the
-//! key, its value, the limit and what to do.
+//! Only this module converts. It reports every problem, not only the first; each message names the
+//! key, its value, the limit and the remedy.
 
 mod card;
 mod channel;
@@ -40,7 +40,7 @@ pub const CHANNELS: RangeInclusive<usize> = 1..=CHANNELS_MAX;
 pub const LIST: usize = crate::endat::service::map::word::LIST_MAX as usize;
 /// Bits of the EnDat period and of the first low phase, in the blocks.
 pub const PERIOD_BITS: u32 = CHANNEL_CONFIG.field("frame", "period_cycles").width;
-/// Bits of the drift that gives alarm, in sixteenths of a cycle, in the blocks.
+/// Bits of the drift limit for the alarm, in sixteenths of a cycle, in the blocks.
 pub const DRIFT_LIMIT_BITS: u32 = LINE.field("limits", "drift").width;
 /// Bits of the input filter length, in the blocks.
 pub const FILTER_BITS: u32 = CHANNEL_CONFIG.field("timing", "filter_cycles").width;
@@ -54,7 +54,7 @@ pub const RECOVERY_LIMIT_BITS: u32 = CHANNEL_CONFIG
 pub const START_TIMEOUT_BITS: u32 = CHANNEL_CONFIG.field("limits", "start_timeout_us").width;
 /// Bits of the number of bits that count turns, in the register map.
 const MULTI_TURN_BITS: u32 = CHANNEL_CONFIG.field("timing", "multi_turn_bits").width;
-/// Fewest cycles that a first low phase can be longer than half a period, in the blocks.
+/// Fewest cycles by which a first low phase may exceed half a period, in the blocks.
 pub const FIRST_LOW_EXTRA_MIN: u64 = 4;
 /// Bits of the ready time tR, in the blocks.
 pub const READY_LOW_BITS: u32 = 8;
@@ -62,11 +62,11 @@ pub const READY_LOW_BITS: u32 = 8;
 pub const TIMER_BITS: u32 = CARD_CONFIG.field("trigger_period", "value").width;
 /// Slowest system clock that can count microseconds, in hertz.
 pub const SYSTEM_HZ_MIN: u64 = 1_000_000;
-/// Fastest system clock that the time stamps and counters are made for, in hertz.
+/// Fastest system clock for the time stamps and counters, in hertz.
 pub const SYSTEM_HZ_MAX: u64 = 250_000_000;
 /// Fewest system clock cycles in one bit of the host UART.
 pub const UART_BIT_CYCLES_MIN: u64 = 8;
-/// Largest deviation of the UART rate from the one asked for, in parts per million: half of what 8N1 stands.
+/// Largest deviation of the UART rate from the requested one, in parts per million: half of what 8N1 tolerates.
 pub const UART_TOLERANCE_PPM: u64 = 20_000;
 /// Bits on the line for one byte (8N1).
 pub const UART_BITS_PER_BYTE: u64 = 10;
@@ -80,15 +80,15 @@ pub const DELAY_BITS: u32 = 11;
 pub const DELAY_BASE_NS: u64 = 200;
 /// Propagation delay of a metre of cable, there and back, worst case, in ns (PWM 20).
 pub const DELAY_NS_PER_M: u64 = 10;
-/// Cycles between a pin and the logic that judges it: synchroniser, longest filter, edge detection.
+/// Cycles between a pin and the logic that evaluates it: synchroniser, longest filter, edge detection.
 pub const INPUT_LATENCY_CYCLES: u64 = 32;
 
-/// What is asked of one channel.
+/// Request for one channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelSpec {
     /// EnDat clock, in hertz.
     pub clock_hz: u64,
-    /// EnDat clock of the frames that measure the propagation delay, in hertz; `None` = the usual one for the cable.
+    /// EnDat clock of the frames that measure the propagation delay, in hertz; `None` = the default for the cable.
     pub calibration_hz: Option<u64>,
     /// Shortest first low phase tST, in ns; 0 = an ordinary half period.
     pub tst_ns: u64,
@@ -96,7 +96,7 @@ pub struct ChannelSpec {
     pub command: ModeCommand,
     /// Position bits of the encoder.
     pub position_bits: u64,
-    /// DATA must be stable this long before it counts, in ns; 0 = no filter.
+    /// DATA must be stable for this time to count, in ns; 0 = no filter.
     pub filter_ns: u64,
     /// The start edge must come within plus or minus this of its expected phase, in ns.
     pub start_window_ns: u64,
@@ -108,15 +108,15 @@ pub struct ChannelSpec {
     pub recovery_max_ns: u64,
     /// Longest cable, in metres.
     pub cable_m: u64,
-    /// What the channel speaks; of the other numbers each protocol takes what its encoders have, T-format `filter_ns` only.
+    /// Protocol of the channel. Each protocol uses those of the other numbers that its encoders have; T-format uses only `filter_ns`.
     pub spoken: Spoken,
-    /// Which triggers the channel takes; if all channels say nothing about it, every one takes all, and there is no logic for another choice.
+    /// Triggers that the channel takes. If no channel sets it, every channel takes all triggers, without selection logic.
     pub trigger: Option<OwnTrigger>,
-    /// The range of the position, for the host; `None` = unknown, unless an EnDat encoder's name plate gives it.
+    /// Range of the position, for the host; `None` = unknown, unless the name plate of an EnDat encoder has it.
     pub range: Option<PositionRange>,
 }
 
-/// What is asked of a card.
+/// Request for a card.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CardSpec {
     /// System clock of the core, in hertz.
@@ -125,25 +125,25 @@ pub struct CardSpec {
     pub channels: Vec<ChannelSpec>,
     /// Sampling rate of the timer trigger, in hertz.
     pub sample_hz: u64,
-    /// Which triggers are enabled after reset.
+    /// Triggers enabled after reset.
     pub sources: TriggerSources,
     /// Rate of the host UART, in bit/s.
     pub baud: u64,
-    /// How often the host reads the results of all channels, in hertz.
+    /// Rate at which the host reads the results of all channels, in hertz.
     pub read_hz: u64,
-    /// What each channel does besides positions.
+    /// Features of each channel in addition to positions.
     pub service: ServiceParts,
-    /// What each channel does about its line delay.
+    /// Line delay features of each channel.
     pub line: LineParts,
     /// The stream of sample sets.
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
-    /// What watches each channel beside it.
+    /// Independent monitoring of each channel.
     pub safety: SafetyParts,
 }
 
-/// A request in which what could not be read is missing; what depends on it is not judged.
+/// A request with missing values, which could not be read; values that depend on them are not checked.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CardDraft {
     /// System clock of the core, in hertz.
@@ -152,27 +152,27 @@ pub struct CardDraft {
     pub channels: Option<Vec<Option<ChannelSpec>>>,
     /// Sampling rate of the timer trigger, in hertz.
     pub sample_hz: Option<u64>,
-    /// Which triggers are enabled after reset.
+    /// Triggers enabled after reset.
     pub sources: Option<TriggerSources>,
     /// Rate of the host UART, in bit/s.
     pub baud: Option<u64>,
-    /// The fastest that the board passes on to the host, in bit/s.
+    /// The fastest rate that the board passes on to the host, in bit/s.
     pub baud_max: Option<u64>,
-    /// How often the host reads the results of all channels, in hertz.
+    /// Rate at which the host reads the results of all channels, in hertz.
     pub read_hz: Option<u64>,
-    /// What each channel does besides positions.
+    /// Features of each channel in addition to positions.
     pub service: ServiceParts,
-    /// What each channel does about its line delay.
+    /// Line delay features of each channel.
     pub line: LineParts,
     /// The stream of sample sets.
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
-    /// What watches each channel beside it.
+    /// Independent monitoring of each channel.
     pub safety: SafetyParts,
     /// See [`CardConfig::initial_values`].
     pub initial_values: bool,
-    /// The host has another bus than a UART; the numbers of the UART mean nothing.
+    /// The host uses another bus than a UART; the UART values are unused.
     pub without_uart: bool,
 }
 
@@ -208,14 +208,14 @@ pub struct TriggerSources {
     pub register: bool,
 }
 
-/// Which triggers a channel takes after reset; the host can change it.
+/// Triggers that a channel takes after reset; the host can change it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OwnTrigger {
-    /// It takes triggers at all.
+    /// The channel takes triggers.
     pub enabled: bool,
-    /// It takes one of so many of its triggers, the first one after a change of these settings.
+    /// The channel takes one of `divider` triggers, starting with the first one after a change of these settings.
     pub divider: u64,
-    /// Sources that it listens to, of those that the card has enabled.
+    /// Sources that the channel accepts, among those enabled in the card.
     pub sources: TriggerSources,
 }
 
@@ -234,30 +234,30 @@ impl Default for OwnTrigger {
 }
 
 impl OwnTrigger {
-    /// Sources that it does not listen to: bit 0 pin, bit 1 timer, bit 2 register.
+    /// Sources that the channel ignores: bit 0 pin, bit 1 timer, bit 2 register.
     pub const fn ignored(&self) -> u64 {
         !self.sources.pin as u64
             | (!self.sources.timer as u64) << 1
             | (!self.sources.register as u64) << 2
     }
 
-    /// Triggers left out after each that it takes.
+    /// Triggers to skip after each accepted one.
     pub const fn skip(&self) -> u64 {
         self.divider.saturating_sub(1)
     }
 
-    /// Of how many periods of the card's timer it takes one; `None` if the timer is not for it.
+    /// Number of timer periods for each trigger of the channel; `None` if it ignores the timer.
     pub fn timer_divider(&self) -> Option<u64> {
         (self.enabled && self.sources.timer).then_some(self.divider)
     }
 }
 
-/// Part of the configuration that a problem belongs to.
+/// Part of the configuration with a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Section {
     /// `[clock]`
     Clock,
-    /// The channel with this index; with the key `channel` their number.
+    /// The channel with this index; with the key `channel` the number of channels.
     Channel(usize),
     /// `[trigger]`
     Trigger,
@@ -269,16 +269,16 @@ pub enum Section {
     Line,
 }
 
-/// One thing that is wrong with a request.
+/// One problem of a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// Where.
+    /// Section.
     pub section: Section,
-    /// Key, named as the field of the request.
+    /// Key, with the name of the field in the request.
     pub key: &'static str,
-    /// The value as given.
+    /// The given value.
     pub value: String,
-    /// What is wrong, the limit, and the remedy.
+    /// Problem, limit and remedy.
     pub text: String,
 }
 
@@ -291,7 +291,7 @@ impl fmt::Display for Problem {
 /// One channel in the units of the blocks; each field fits its configuration input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelConfig {
-    /// EnDat clock period; the high phase is the longer one when odd.
+    /// EnDat clock period; if odd, the high phase is longer.
     pub period_cycles: u64,
     /// First low phase minus half a period (tST).
     pub first_low_extra_cycles: u64,
@@ -301,23 +301,23 @@ pub struct ChannelConfig {
     pub position_bits: u32,
     /// Input filter; 0 = off.
     pub filter_cycles: u64,
-    /// And half a cycle more; with `double_edge`.
+    /// Half a cycle more; with `double_edge`.
     pub filter_half: bool,
     /// Half width of the start window.
     pub start_window_cycles: u64,
     /// Longest wait for the start bit from the end of the turnaround, also at the calibration clock, in microseconds.
     pub start_timeout_us: u64,
-    /// DATA must have fallen by then, counted from the last rising clock edge at the receiver.
+    /// DATA must have fallen by this time, counted from the last rising clock edge at the receiver.
     pub recovery_limit_cycles: u64,
-    /// DATA must be low this long before the next frame (tR).
+    /// DATA must be low for this time before the next frame (tR).
     pub ready_low_cycles: u64,
     /// Quiet time after an aborted transfer, in microseconds.
     pub abort_us: u64,
-    /// What the channel speaks. In T-format `period_cycles` is a bit, `start_timeout_us` the longest pause before the reply, and of the
-    /// other numbers only `filter_cycles` counts; in SSI `command`, `start_window_cycles` and the three times from `start_timeout_us` on but
-    /// the recovery time mean nothing.
+    /// Protocol of the channel. In T-format `period_cycles` is a bit, `start_timeout_us` the longest pause before the reply, and of the
+    /// other numbers only `filter_cycles` is used. SSI does not use `command`, `start_window_cycles` and the three times from `start_timeout_us` on, except
+    /// the recovery time.
     pub spoken: Spoken,
-    /// What was asked for, for reports.
+    /// The request, for reports.
     pub spec: ChannelSpec,
 }
 
@@ -330,27 +330,27 @@ pub struct CardConfig {
     pub channels: Vec<ChannelConfig>,
     /// Period of the sampling timer.
     pub sample_period_cycles: u64,
-    /// Sampling rate asked for, in hertz.
+    /// Requested sampling rate, in hertz.
     pub sample_hz: u64,
     /// Triggers enabled after reset.
     pub sources: TriggerSources,
     /// System clock cycles in a UART bit.
     pub uart_bit_cycles: u64,
-    /// UART rate asked for, in bit/s.
+    /// Requested UART rate, in bit/s.
     pub baud: u64,
-    /// How often the host reads, in hertz.
+    /// Rate at which the host reads, in hertz.
     pub read_hz: u64,
-    /// What each channel does besides positions.
+    /// Features of each channel in addition to positions.
     pub service: ServiceParts,
-    /// What each channel does about its line delay.
+    /// Line delay features of each channel.
     pub line: LineParts,
     /// The stream of sample sets.
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
-    /// What watches each channel beside it.
+    /// Independent monitoring of each channel.
     pub safety: SafetyParts,
-    /// The device gives registers and RAM their start values when it is configured; otherwise a reset does, and RAM is cleared after it.
+    /// The device configuration sets registers and RAM to their start values. Otherwise a reset does, and RAM is cleared after it.
     pub initial_values: bool,
     /// First 48 bits of the SHA-256 of the canonical configuration (0 until a generator sets it).
     pub hash: u64,
@@ -372,7 +372,7 @@ pub struct FrameTime {
 }
 
 impl ChannelSpec {
-    /// Of a channel that speaks this: nothing else is asked for yet.
+    /// A channel with this protocol and default values.
     pub const fn speaking(spoken: Spoken) -> Self {
         Self {
             clock_hz: 0,
@@ -420,7 +420,7 @@ const fn delay_max_ns(cable_m: u64) -> u64 {
     DELAY_BASE_NS + DELAY_NS_PER_M * cable_m
 }
 
-/// Longest input filter where DATA is looked at so many times in a cycle, in these looks.
+/// Longest input filter with `places` samples of DATA in a cycle, in samples.
 pub const fn filter_longest(places: u64) -> u64 {
     places * (max_of(FILTER_BITS) + 1) - 1
 }
@@ -450,7 +450,7 @@ impl<'a> Check<'a> {
         });
     }
 
-    /// Whether `value` is within `limits`; reports it when not.
+    /// True if `value` is within `limits`; otherwise reports the problem.
     pub(crate) fn within(&mut self, key: &'static str, value: u64, limits: &Limits) -> bool {
         let inside = limits.contains(value);
         if !inside {

@@ -1,33 +1,33 @@
-//! Parts that a card may have besides triggered positions.
+//! Optional features of a card in addition to triggered positions.
 
 use super::LIST;
 use crate::endat::line_delay::mode;
 use crate::endat::line_monitor::LineStart;
 use crate::endat::timing::sixteenths;
 
-/// What a channel does about its line delay besides following it by a cycle for each frame; what is not asked for takes no logic.
+/// Line delay features of a channel, in addition to following it by a cycle for each frame; disabled features take no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineParts {
-    /// Phase from the mean over many edges, from each start bit or from a register, at the host's choice; majority of three samples.
+    /// Selectable sampling phase: mean of many edges, each start bit, or a register; majority of three samples.
     pub alignment: bool,
-    /// Margin of the samples, drift and glitches are measured; takes alignment.
+    /// Measures margin of the samples, drift and glitches; requires alignment.
     pub margin: bool,
-    /// DATA is looked at on both edges of the system clock; takes alignment.
+    /// Samples DATA on both edges of the system clock; requires alignment.
     pub double_edge: bool,
-    /// Source of the phase after reset; the host may change this and what follows.
+    /// Source of the phase after reset; the host can change this and the settings below.
     pub phase: PhaseSource,
-    /// Delay with [`PhaseSource::Fixed`], synchroniser and filter included, in nanoseconds.
+    /// Delay with [`PhaseSource::Fixed`], including synchroniser and filter, in nanoseconds.
     pub fixed_delay_ns: u64,
-    /// Drift of the tracked delay that gives alarm, in nanoseconds; 0 = none.
+    /// Drift of the tracked delay that raises the alarm, in nanoseconds; 0 = none.
     pub drift_limit_ns: u64,
-    /// Samples of each bit: 1, or 3 for their majority; 0 stands for 1.
+    /// Samples of each bit: 1, or 3 for their majority; 0 means 1.
     pub samples: u64,
 }
 
-/// Where the phase of the samples comes from.
+/// Source of the sampling phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PhaseSource {
-    /// The mean over many edges.
+    /// The mean of many edges.
     #[default]
     Tracked,
     /// The start bit of each frame.
@@ -37,7 +37,7 @@ pub enum PhaseSource {
 }
 
 impl LineParts {
-    /// What the line's settings are after reset.
+    /// The line's settings after reset.
     pub fn start(&self, system_hz: u64) -> LineStart {
         LineStart {
             phase_mode: match self.phase {
@@ -54,88 +54,88 @@ impl LineParts {
     }
 }
 
-/// Outputs to logic and to a processor in the same device (`docs/bus.md`); what is not asked for takes no logic.
+/// Outputs to logic and to a processor in the same device (`docs/bus.md`); disabled features take no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutputParts {
-    /// Cropped position, its strobe, and an OR of selected causes, of each channel.
+    /// Cropped position, its strobe, and an OR of selected causes, for each channel.
     pub position: bool,
     /// An interrupt with status and mask.
     pub interrupt: bool,
 }
 
 impl OutputParts {
-    /// Whether there are any.
+    /// True if an output is enabled.
     pub const fn any(self) -> bool {
         self.position || self.interrupt
     }
 }
 
-/// Time between two forced errors, in milliseconds, if nothing else is said.
+/// Default time between two forced errors, in milliseconds.
 pub const ERROR_TEST_MS: u16 = 1_000;
 
-/// What watches a channel beside it, for a safe control (`docs/safety.md`); what is not asked for takes no logic.
+/// Independent monitoring of a channel, for a safe control (`docs/safety.md`); disabled features take no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SafetyParts {
-    /// Recovery time measured a second time, by a counter that nothing sets back.
+    /// Recovery time measured independently, by a free-running counter.
     pub recovery_counter: bool,
-    /// Results for a second controller, over an SPI that can only be read.
+    /// Results for a second controller, over a read-only SPI.
     pub second_interface: bool,
     /// A second receiver on the same samples, compared with the first.
     pub second_receiver: bool,
-    /// Stored bits are checked, so that an upset of a register shows.
+    /// Checks stored bits, so that an upset of a register is detected.
     pub upset_guards: bool,
-    /// A port without bus: a position that is withdrawn gives way to the one before it. With a bus it always does.
+    /// For a port without bus: the previous position replaces a withdrawn one. With a bus it always does.
     pub restore: bool,
-    /// One forced error each so many milliseconds, whose cause is awaited; 0 = no schedule, and no program for it.
+    /// Period of the forced errors, whose cause is checked, in milliseconds; 0 leaves out schedule and program.
     pub error_test_ms: u16,
 }
 
-/// The stream of sample sets (`docs/stream.md`); without a buffer there is none, and no logic for it.
+/// The stream of sample sets (`docs/stream.md`); without a buffer it takes no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamParts {
     /// Bytes of the buffer, one of [`crate::card::stream::buffer::BUFFER_BYTES`]; 0 = no stream.
     pub fifo_bytes: u64,
-    /// What it does after reset.
+    /// State after reset.
     pub start: StreamStart,
-    /// Sets have the additional data, too.
+    /// Sets include the additional data.
     pub additional_data: bool,
 }
 
-/// What a stream does after reset; the host can change it.
+/// State of a stream after reset; the host can change it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StreamStart {
-    /// Nothing.
+    /// Off.
     #[default]
     Off,
-    /// Triggers make sets, which wait in the buffer.
+    /// Triggers produce sets in the buffer.
     Collect,
-    /// Triggers make sets, which are pushed.
+    /// Triggers produce sets, which are pushed.
     Push,
 }
 
 impl StreamStart {
-    /// Whether triggers make sets.
+    /// True if triggers produce sets.
     pub const fn collects(self) -> bool {
         !matches!(self, Self::Off)
     }
 
-    /// Whether frames go out over the UART.
+    /// True if the UART sends frames.
     pub const fn pushes(self) -> bool {
         matches!(self, Self::Push)
     }
 }
 
-/// What a channel does besides triggered positions; what is not asked for takes no logic.
+/// Features of a channel in addition to triggered positions; disabled features take no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ServiceParts {
     /// All mode commands, additional data, counters, alarm.
     pub requests: bool,
-    /// Stuck lines, absent and late encoders told apart, watchdog, shortest recovery time; takes requests.
+    /// Distinguishes stuck lines, absent and late encoders; watchdog, shortest recovery time; requires requests.
     pub diagnosis: bool,
-    /// Continuous clock; takes requests.
+    /// Continuous clock; requires requests.
     pub continuous: bool,
-    /// Initialisation of the encoder after reset and after it has been plugged in; takes requests.
+    /// Initialisation of the encoder after reset and after it is plugged in; requires requests.
     pub initialise: bool,
-    /// MRS codes of the additional data that are selected in turn from the start on, 0 = none; takes requests.
+    /// MRS codes of the additional data that are selected in turn after reset, 0 = none; requires requests.
     pub infos: [u8; LIST],
 }

@@ -1,15 +1,15 @@
-//! What a position is: bits that count turns and bits of the angle, or a place on a scale. The card keeps it for the host; no block takes it.
+//! Kind of a position: turns and angle, or a place on a scale. The card stores it for the host; no block uses it.
 
 use super::*;
 use endat_regs::protocol::MAX_POSITION_BITS;
 use endat_regs::range;
 
-/// The range of a channel's position, if the file gives one.
+/// The range of a channel's position, if the configuration has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PositionRange {
     /// Turns and the angle within a turn.
     Rotary {
-        /// Bits of the angle; `None` = those of the position that count no turns.
+        /// Bits of the angle; `None` = the bits of the position that do not count turns.
         single_turn_bits: Option<u64>,
         /// Bits that count turns.
         multi_turn_bits: u64,
@@ -29,7 +29,7 @@ impl PositionRange {
         kind.into()
     }
 
-    /// Bits of the angle, and bits that count turns, of a position of so many bits.
+    /// Bits of the angle, and bits that count turns, of a position with `position_bits` bits.
     pub fn bits(self, position_bits: u64) -> Option<[u64; 2]> {
         match self {
             Self::Rotary {
@@ -45,17 +45,17 @@ impl PositionRange {
 }
 
 impl ChannelConfig {
-    /// Bits of the angle, and bits that count turns, if that is said.
+    /// Bits of the angle, and bits that count turns, if known.
     pub fn turn_bits(&self) -> Option<[u64; 2]> {
         self.spec.range?.bits(self.position_bits.into())
     }
 
-    /// Bits that count turns; 0 where nobody has said so.
+    /// Bits that count turns; 0 if unknown.
     pub fn multi_turn_bits(&self) -> u64 {
         self.turn_bits().map_or(0, |[_, multi]| multi)
     }
 
-    /// Width of the position as the host reads it: that of angle and turns together, where other bits may be between the two.
+    /// Width of the position for the host: angle and turns together, even if other bits are between the two.
     pub fn told_position_bits(&self) -> u64 {
         let apart = self
             .turn_bits()
@@ -64,12 +64,12 @@ impl ChannelConfig {
     }
 }
 
-/// Refuses a range that is not that of a position of so many bits.
+/// Rejects a range that does not match the position.
 pub(super) fn check_range(check: &mut Check<'_>, config: &ChannelConfig) {
     let Some([single, multi]) = config.turn_bits() else {
         return;
     };
-    // A value that was refused must not cause a second complaint.
+    // A rejected value must not cause a second message.
     if !limits("position_bits", None).contains(config.position_bits.into()) {
         return;
     }
@@ -77,17 +77,17 @@ pub(super) fn check_range(check: &mut Check<'_>, config: &ChannelConfig) {
         u64::from(config.position_bits),
         config.protocol().row().turns_at.map(u64::from),
     );
-    // Angle and turns each have their own place, or share the position.
+    // Angle and turns have fixed places, or share the position.
     let (most_single, most_multi) = match turns_at {
         Some(at) => (at, u64::from(MAX_POSITION_BITS) - at),
         None => (width, width - 1),
     };
     let mut within = |key, value, most| {
-        let limits = limits(key, None).at_most(most, "the position has no more");
+        let limits = limits(key, None).at_most(most, "the position has no more bits");
         check.within(key, value, &limits)
     };
     let are_good = [
-        // Without single_turn_bits the angle has the bits that turns leave.
+        // Without single_turn_bits the angle has all bits that are not turns.
         single == 0 || within("single_turn_bits", single, most_single),
         within("multi_turn_bits", multi, most_multi),
     ];
@@ -149,9 +149,9 @@ mod tests {
                 ([13, 13], "single_turn_bits = 13: with multi_turn_bits = 13 that is 26 bits, and position_bits = 25; set single_turn_bits to 12, or set multi_turn_bits to 12"),
                 ([25, 1], "set single_turn_bits to 24, or set multi_turn_bits to 0"),
                 ([5, 24], "set single_turn_bits to 1, or set multi_turn_bits to 20"),
-                ([26, 0], "single_turn_bits = 26: outside 1..25 (the position has no more)"),
-                ([12, 32], "multi_turn_bits = 32: outside 0..24 (the position has no more)"),
-                ([0, 25], "multi_turn_bits = 25: outside 0..24 (the position has no more)"),
+                ([26, 0], "single_turn_bits = 26: outside 1..25 (the position has no more bits)"),
+                ([12, 32], "multi_turn_bits = 32: outside 0..24 (the position has no more bits)"),
+                ([0, 25], "multi_turn_bits = 25: outside 0..24 (the position has no more bits)"),
             ] {
                 let why = resolved(&spec(spoken, 25, bits)).unwrap_err();
                 assert!(why.contains(told), "{why}");

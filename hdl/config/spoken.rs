@@ -1,4 +1,4 @@
-//! What a channel speaks, in cycles.
+//! Protocol of a channel, converted to cycles.
 
 use super::*;
 use crate::protocols::{of_spoken, Spoken};
@@ -41,12 +41,12 @@ impl ChannelConfig {
         }
     }
 
-    /// What it speaks.
+    /// Protocol of the channel.
     pub const fn protocol(&self) -> Protocol {
         self.spoken.protocol()
     }
 
-    /// Whether that is EnDat.
+    /// True for EnDat.
     pub fn is_endat(&self) -> bool {
         self.protocol() == Protocol::Endat
     }
@@ -60,7 +60,7 @@ impl ChannelConfig {
         )
     }
 
-    /// Why a trigger would come before the channel is ready, and the remedy.
+    /// Message for a trigger that comes before the channel is ready, with the remedy.
     pub(crate) fn too_long(&self, index: usize, times: TooLong) -> String {
         of_spoken!(
             &self.spoken,
@@ -71,25 +71,25 @@ impl ChannelConfig {
 }
 
 impl CardConfig {
-    /// What each channel speaks.
+    /// Protocol of each channel.
     pub fn protocols(&self) -> Protocols {
         let channels = self.channels.iter().enumerate();
         channels.fold(Protocols::ENDAT, |all, (n, c)| all.with(n, c.protocol()))
     }
 
-    /// Numbers of the channels that speak a protocol.
+    /// Numbers of the channels with a protocol.
     pub fn speakers(&self, protocol: Protocol) -> impl Iterator<Item = usize> + '_ {
         let channels = self.channels.iter().enumerate();
         let speakers = channels.filter(move |(_, c)| c.protocol() == protocol);
         speakers.map(|(n, _)| n)
     }
 
-    /// Whether a channel speaks it.
+    /// True if a channel has the protocol.
     pub fn speaks(&self, protocol: Protocol) -> bool {
         self.speakers(protocol).next().is_some()
     }
 
-    /// Channels that speak EnDat, with their numbers.
+    /// EnDat channels, with their numbers.
     pub fn endat_channels(&self) -> impl Iterator<Item = (usize, &ChannelConfig)> {
         let channels = self.channels.iter().enumerate();
         channels.filter(|(_, c)| c.is_endat())

@@ -1,4 +1,4 @@
-//! Tests of [`super`]: the published tables, and every refusal.
+//! Tests of [`super`]: the published tables, and every rejection.
 
 use super::*;
 use crate::endat::timing::{PERIOD_CYCLES_MIN, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
@@ -42,7 +42,7 @@ fn card() -> CardSpec {
     }
 }
 
-/// Pulses and microseconds of a frame at a system clock that makes `clock_hz` exactly.
+/// Pulses and microseconds of a frame at a system clock that generates `clock_hz` exactly.
 fn frame(clock_hz: u64, command: ModeCommand, bits: u64, tst_ns: u64) -> (u64, f64) {
     let system_hz = [100_000_000, 128_000_000, 120_000_000, 60_000_000]
         .into_iter()
@@ -224,7 +224,7 @@ fn an_odd_period_keeps_the_first_low_phase_at_least_tst() {
 fn problem(change: impl Fn(&mut CardSpec)) -> Problem {
     let mut request = card();
     change(&mut request);
-    let problems = CardConfig::resolve(&request).expect_err("must be refused");
+    let problems = CardConfig::resolve(&request).expect_err("must be rejected");
     assert_eq!(problems.len(), 1, "{problems:?}");
     problems[0].clone()
 }
@@ -267,7 +267,7 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
     }
 }
 
-/// A card that the slowest system clock can have.
+/// A card that the slowest system clock supports.
 fn slow_card() -> CardSpec {
     let mut request = card();
     request.system_hz = 1_000_000;
@@ -304,7 +304,7 @@ fn what_a_slow_system_clock_cannot_have_is_refused() {
 
 #[test]
 fn the_clock_that_measures_the_delay_leaves_room_for_the_receiver() {
-    // 1 us of the usual calibration clock is one cycle here: the receiver would see a bit when the next one comes.
+    // 1 us of the default calibration clock is one cycle here: the receiver would see a bit when the next one comes.
     let mut request = slow_card();
     request.channels[1].clock_hz = 142_857;
     let problems = CardConfig::resolve(&request).unwrap_err();
@@ -315,14 +315,14 @@ fn the_clock_that_measures_the_delay_leaves_room_for_the_receiver() {
     );
     request.channels[1].clock_hz = 125_000;
     assert!(CardConfig::resolve(&request).is_ok());
-    // No clock of EnDat is slow enough.
+    // No EnDat clock is slow enough.
     request.channels[1].cable_m = 310;
     let problems = CardConfig::resolve(&request).unwrap_err();
     assert!(
         problems[0].text.contains("shorten cable or filter"),
         "{problems:?}"
     );
-    // One that is asked for, on a short cable: four fifths of its period would hold the delay.
+    // A requested clock, with a short cable: four fifths of its period would hold the delay.
     let asked = |calibration_hz| {
         let mut request = card();
         request.channels[0].cable_m = 0;
@@ -378,7 +378,7 @@ fn short_recovery_needs_a_2_2_command_above_one_megahertz() {
 }
 
 proptest::proptest! {
-    /// Whatever the numbers, the result either is a list of problems or fits the configuration inputs of the blocks.
+    /// For any numbers, the result is either a list of problems or fits the configuration inputs of the blocks.
     #[test]
     fn what_resolves_fits_the_blocks(
         system_hz in 0u64..400_000_000, clock_hz in 0u64..20_000_000, tst_ns in 0u64..12_000, bits in 0u64..60,

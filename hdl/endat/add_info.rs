@@ -1,4 +1,4 @@
-//! Additional data: which of the two the encoder sends, and what they said.
+//! Additional data: which blocks the encoder sends, and their last content.
 //!
 //! ```text
 //! supplement 001001 with 0x40..0x4E -> info 1 follows every position, 0x4F -> no more
@@ -7,9 +7,9 @@
 //! one is missing -> only those that came    the answer is longer than expected -> both
 //! ```
 //!
-//! The last line finds the truth again after a reset, another plug or a request that the encoder refused: each frame that contradicts
-//! the record corrects it, the second one at the latest; bit I4 of a block tells which of the two it is. A frame whose CRC is
-//! wrong contradicts nothing, and no answer is longer than both: then only those that were right are there.
+//! The last line resynchronises the record after a reset, a changed encoder or a request that the encoder rejected. Each frame that contradicts
+//! the record corrects it, at the latest the second one; bit I4 identifies the block. A frame with a wrong CRC does not change
+//! the record. If an answer is longer than expected with both selected, only the blocks with a right CRC count.
 //!
 //! ```text
 //! slow frame   last CRC bit  X LOW, or HIGH for tm ~~~~\_____
@@ -36,9 +36,9 @@ pub struct AddInfo {
     pub start: Signal<In, Bit>,
     /// Strobe: middle of the expected place of a data edge.
     pub center: Signal<In, Bit>,
-    /// Strobe: the data line is sampled, in the middle of the cell behind it.
+    /// Strobe: the data line is sampled, in the middle of the cell after it.
     pub sample: Signal<In, Bit>,
-    /// Strobe: position, or answer, and its CRC have been taken.
+    /// Strobe: position, or answer, and its CRC have been received.
     pub answer_done: Signal<In, Bit>,
     /// The frame has F2, so additional data may follow.
     pub has_f2: Signal<In, Bit>,
@@ -48,13 +48,13 @@ pub struct AddInfo {
     pub command: Signal<In, Bits<6>>,
     /// MRS code that the frame sends.
     pub mrs: Signal<In, Bits<8>>,
-    /// Strobe: a block of additional data has been taken.
+    /// Strobe: a block of additional data has been received.
     pub info_done: Signal<In, Bit>,
-    /// Its CRC is right; the same one cycle after `answer_done`.
+    /// The CRC of the block is right; also valid one cycle after `answer_done`, for the answer.
     pub crc_ok: Signal<In, Bit>,
-    /// Its bits WRN, RM, Busy, I4..I0, 16 bits.
+    /// Bits WRN, RM, Busy, I4..I0 of the block, then 16 data bits.
     pub word: Signal<In, Bits<24>>,
-    /// Its CRC as received.
+    /// CRC of the block as received.
     pub crc: Signal<In, Bits<5>>,
     /// Strobe: the frame has ended.
     pub over: Signal<In, Bit>,
@@ -63,7 +63,7 @@ pub struct AddInfo {
     /// Record of the additional data that follow each position.
     #[bundle]
     pub record: AdditionalDataOut,
-    /// How many follow the position of this frame.
+    /// Number of blocks that follow the position of this frame.
     pub infos: Signal<Out, Bits<2>>,
     /// Strobe: in the first part of a long cell, where a short recovery time is not over yet.
     pub look: Signal<Out, Bit>,
@@ -73,11 +73,11 @@ pub struct AddInfo {
     first: Reg<Bits<24>>,
     /// Last block of info 2.
     second: Reg<Bits<24>>,
-    /// Received CRC of info 1 in this frame; 0 until it comes.
+    /// Received CRC of info 1 in this frame; 0 until received.
     first_crc: Reg<Bits<5>>,
-    /// Received CRC of info 2 in this frame; 0 until it comes.
+    /// Received CRC of info 2 in this frame; 0 until received.
     second_crc: Reg<Bits<5>>,
-    /// Blocks that have come in this frame: bit 0 info 1, bit 1 info 2.
+    /// Blocks received in this frame: bit 0 info 1, bit 1 info 2.
     seen: Reg<Bits<2>>,
     /// Blocks of this frame whose CRC is right: bit 0 info 1, bit 1 info 2.
     right: Reg<Bits<2>>,
@@ -89,9 +89,9 @@ pub struct AddInfo {
     remaining: Reg<Bits<8>>,
     /// High for one cycle: a short recovery time is not over yet.
     look_now: Reg<Bit>,
-    /// From the edge behind an answer to `look`, in system clock cycles.
+    /// From the edge after an answer to `look`, in system clock cycles.
     separator_cycles: Constant<Bits<8>>,
-    /// High if the block that comes is info 2.
+    /// High if the current block is info 2.
     is_second: Signal<Local, Bit>,
     /// High with `over` if the supplement was sent.
     is_sent: Signal<Local, Bit>,
@@ -102,7 +102,7 @@ pub struct AddInfo {
 }
 
 impl AddInfo {
-    /// A record that looks for additional data so many system clock cycles (1..=255) after the edge behind an answer.
+    /// A record that looks for additional data `separator_cycles` system clock cycles (1..=255) after the edge after an answer.
     pub fn new(separator_cycles: u64) -> Self {
         Self::from_parts(AddInfoParts {
             separator_cycles: Constant::new(separator_cycles.into()),
@@ -113,7 +113,7 @@ impl AddInfo {
 #[kernel]
 impl Logic for AddInfo {
     fn update(&mut self) {
-        // A sample that comes first leaves nothing to look for.
+        // After a sample there is nothing left to look for.
         self.look_now.d.next = (self.remaining.q.val() == 1) & !self.sample.val();
         if self.remaining.q.val().any() {
             self.remaining.d.next = self.remaining.q.val() - 1;
@@ -131,7 +131,7 @@ impl Logic for AddInfo {
             self.trusted.d.next = self.crc_ok.val();
         }
 
-        // Two come in their order. One alone says itself which it is, if it can be believed.
+        // Two blocks come in fixed order. A single one identifies itself, if its CRC is right.
         self.is_second.next = self.selected.q.val().get_bit(1);
         if self.selected.q.val().all() & self.seen.q.val().get_bit(1) {
             self.is_second.next = false;
@@ -164,7 +164,7 @@ impl Logic for AddInfo {
             self.trusted.d.next = false;
         }
 
-        // Whatever gives a frame up before its end leaves the supplement unsent.
+        // A frame that is aborted early leaves the supplement unsent.
         self.is_sent.next = !self.flags.val().get_bit(0)
             & !self.flags.val().get_bit(1)
             & !self.flags.val().get_bit(2)
@@ -196,9 +196,9 @@ impl Logic for AddInfo {
                     self.selected.d.next = self.right.q.val();
                 }
             }
-            // A frame teaches this once.
+            // A frame corrects the record once.
             self.trusted.d.next = false;
-            // 101010, whatever became of its answer.
+            // 101010, whatever its answer was.
             if self.command.val() == 42 {
                 self.selected.d.next = 0.into();
             }

@@ -8,12 +8,12 @@
 //!                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
 //! ```
 //!
-//! With requests the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
-//! has a frame of its own. A separate block keeps the record of the additional data that follow each position.
+//! With requests the channel sends all mode commands: a request is attached to the next triggered position frame (EnDat 2.2), or
+//! has a separate frame. The block AddInfo records the additional data that follow each position.
 //!
 //! The first frame after reset, after an aborted frame and after `calibrate` runs at the calibration clock and
-//! measures the propagation delay; all others run at the configured clock. Settings stay as they are while `busy` and in the cycle of a trigger. With guards a frame
-//! takes a copy of them, and a setting that changes under way makes its position invalid.
+//! measures the propagation delay; all others run at the configured clock. Settings are frozen while `busy` and in the cycle of a trigger.
+//! With guards a frame keeps a copy of them, and a setting that changes during the frame makes its position invalid.
 
 mod kernel;
 
@@ -41,11 +41,11 @@ use rust_hdl::prelude::*;
 /// From the cycle with the trigger strobe to the first cycle with the EnDat clock low, at every width and rate.
 pub const TRIGGER_TO_FIRST_FALL_CYCLES: u64 = 3;
 /// From the cycle in which the bit after the last CRC bit is sampled to the one with the result strobe, at every width and rate; one more
-/// where additional data follow.
+/// if additional data follow.
 pub const TAIL_SAMPLE_TO_RESULT_CYCLES: u64 = 3;
 /// From the time in `first_fall_timestamp` to the first cycle with the EnDat clock low.
 pub const TIMESTAMP_TO_FIRST_FALL_CYCLES: u64 = 2;
-/// What registers at both pins and the synchroniser add to `delay_cycles`; the filter adds its length.
+/// Delay that the registers at both pins and the synchroniser add to `delay_cycles`; the filter adds its length.
 pub const DELAY_OFFSET_CYCLES: u64 = 4;
 
 /// Frames that measure the delay, of a channel with alignment.
@@ -63,21 +63,21 @@ pub struct Channel {
     pub tick_us: Signal<In, Bit>,
     /// Free-running time in system clock cycles.
     pub timestamp: Signal<In, Bits<32>>,
-    /// One-cycle strobe: take a position.
+    /// One-cycle strobe: read a position.
     pub trigger: Signal<In, Bit>,
     /// Strobe: measure the propagation delay again with the next frame.
     pub calibrate: Signal<In, Bit>,
     /// Settings of one channel, as the host has written them.
     #[bundle]
     pub settings_in: PortSettingsIn,
-    /// What the service asks of its channel.
+    /// Requests of the service to its channel.
     #[bundle]
     pub orders: ServiceOrdersIn,
     /// Source of the phase: 0 mean over many edges, 1 fixed delay, 2 start bit of each frame.
     pub phase_mode: Signal<In, Bits<2>>,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
     pub fixed_delay: Signal<In, Bits<15>>,
-    /// Each sample is the majority of itself and its neighbours.
+    /// Each sample is the majority of itself and its two neighbours.
     pub majority: Signal<In, Bit>,
     /// The line of one encoder.
     #[bundle]
@@ -87,7 +87,7 @@ pub struct Channel {
     pub result: FrameResultOut,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
-    /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
+    /// Tracked propagation delay tD, including synchroniser and filter, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
     /// The delay as the mean of many edges, in sixteenths of a system clock cycle.
     pub phase: Signal<Out, Bits<15>>,
@@ -97,27 +97,27 @@ pub struct Channel {
     pub edge_offset: Signal<Out, Bits<8>>,
     /// Strobe: the filter has removed a pulse.
     pub glitch: Signal<Out, Bit>,
-    /// A trigger would not be taken.
+    /// A trigger would be lost.
     pub busy: Signal<Out, Bit>,
-    /// The frame under way has the request.
+    /// The frame under way carries the request.
     pub request_runs: Signal<Out, Bit>,
     /// DATA is HIGH, and no frame is on the wire.
     pub line_high: Signal<Out, Bit>,
-    /// Strobe: a trigger has been lost.
+    /// Strobe: a trigger is lost.
     pub displaced: Signal<Out, Bit>,
     /// A frame, triggered or not, has ended.
     #[bundle]
     pub end: FrameEndOut,
-    /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
+    /// Answer of the last request with a separate frame: 8 and 16 bits, or a position or test values from bit 0 on.
     pub reply: Signal<Out, Bits<48>>,
     /// Record of the additional data that follow each position.
     #[bundle]
     pub record: AdditionalDataOut,
-    /// The propagation delay is known: frames run at the full clock, requests may ride.
+    /// The propagation delay is known: frames run at the full clock, and requests may be attached to triggered frames.
     pub calibrated: Signal<Out, Bit>,
     /// Strobe: the data line is sampled for a bit of the answer.
     pub sample_strobe: Signal<Out, Bit>,
-    /// With that, and double edge: at the clock edge, not half a cycle before it.
+    /// With that, and double edge: sampled at the clock edge, not half a cycle before it.
     pub sample_second: Signal<Out, Bit>,
     filter: InputFilter,
     clock_gen: ClockGen,
@@ -138,11 +138,11 @@ pub struct Channel {
     /// Driver enable, for the pin.
     oe_pin: Reg<Bit>,
     second: Vec<SecondReceiver>,
-    /// High from a request with a frame of its own until that frame begins or the request is cancelled.
+    /// High from a request with a separate frame until that frame begins or the request is cancelled.
     own_asked: Vec<ProtectedBit>,
-    /// High from a request that rides until its frame begins or the request is cancelled.
+    /// High from a request for a triggered frame until that frame begins or the request is cancelled.
     ride_asked: Vec<ProtectedBit>,
-    /// High if a request waits for a frame of its own.
+    /// High if a request waits for a separate frame.
     own_wanted: Signal<Local, Bit>,
     /// High if a request waits for the next triggered frame.
     ride_wanted: Signal<Local, Bit>,
@@ -165,15 +165,15 @@ pub struct Channel {
     frame_width: Reg<Bits<6>>,
     /// EnDat clock period of the frame, in system clock cycles; follows the settings between two frames.
     frame_period: Reg<Bits<11>>,
-    /// High if the frame is a request's own; chosen between two frames.
+    /// High if the frame is a separate frame of a request; chosen between two frames.
     frame_own: Reg<Bit>,
-    /// High if a request rides on the frame; chosen between two frames.
+    /// High if a request is attached to the frame; chosen between two frames.
     frame_ride: Reg<Bit>,
     /// High for one cycle after a block of additional data is complete.
     info_taken: Reg<Bit>,
-    /// High for one cycle after the answer to a request with a frame of its own is complete.
+    /// High for one cycle after the answer to a request with a separate frame is complete.
     reply_taken: Reg<Bit>,
-    /// Payload of the last answer to a request with a frame of its own.
+    /// Payload of the last answer to a request with a separate frame.
     reply_word: Reg<Bits<48>>,
     /// High if the CRC of that answer is right; cleared when a frame begins.
     reply_right: Reg<Bit>,
@@ -198,9 +198,9 @@ pub struct Channel {
     word: Signal<Local, Bits<24>>,
     /// Last answer to a request, if it arrived MSB first.
     turned: Signal<Local, Bits<24>>,
-    /// High if the CRC fits the bits as they came and as they are stored.
+    /// High if the CRC matches the bits as received and as stored.
     crc_ok: Signal<Local, Bit>,
-    /// Faults that a test forces upon the frame: F1, F2, CRC, second receiver.
+    /// Faults forced by a test in this frame: F1, F2, CRC, second receiver.
     forced_now: Signal<Local, Bits<4>>,
     /// EnDat clock period of the frame, in system clock cycles.
     period: Signal<Local, Bits<11>>,

@@ -8,8 +8,8 @@
 //! rise        _________________/\________/\_______
 //! ```
 //!
-//! The line idles HIGH and a frame ends with it HIGH, an aborted one as well. A low phase that was held is followed
-//! by a whole half period, and a low phase that has begun is finished: no pulse is ever shortened.
+//! The line idles HIGH, and every frame ends HIGH, an aborted one as well. A whole half period follows a low phase that was held,
+//! and a low phase that has begun is finished: no pulse is ever shortened.
 
 use crate::endat::features::Features;
 use crate::half_period::HalfPeriod;
@@ -31,7 +31,7 @@ pub struct ClockGen {
     pub hold_low: Signal<In, Bit>,
     /// Keeps a high phase high: no frame, or its last rising edge has been sent.
     pub stop: Signal<In, Bit>,
-    /// Period, in system clock cycles; the high phase is the longer one if it is odd.
+    /// Period, in system clock cycles; if odd, the high phase is longer.
     pub period_cycles: Signal<In, Bits<11>>,
     /// The EnDat clock, one cycle before it reaches the pin.
     pub endat_clk: Signal<Out, Bit>,
@@ -49,7 +49,7 @@ pub struct ClockGen {
     risen: Reg<Bit>,
     /// High in the last cycle before a rising edge.
     rise_now: Signal<Local, Bit>,
-    /// High in the last cycle before a falling edge, but for the first one.
+    /// High in the last cycle before a falling edge, except the first one.
     fall_now: Signal<Local, Bit>,
     /// High while a low phase is held.
     held: Signal<Local, Bit>,

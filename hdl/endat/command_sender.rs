@@ -21,7 +21,7 @@ use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Sends what the receiver has to say, MSB first, on falling clock edges.
+/// Sends mode command, parameter and supplement, MSB first, on falling clock edges.
 #[derive(LogicBlock, Block)]
 #[properties("../properties/command_sender.sv")]
 pub struct CommandSender {
@@ -52,7 +52,7 @@ pub struct CommandSender {
     parameter_bits: Constant<Bits<5>>,
     /// Cells left of the mode command, or of the zeros and start bit of a supplement; counts down to 0.
     cells_left: Reg<Bits<4>>,
-    /// Bits left of the parameter, with the one on the line; 0 if none is sent.
+    /// Bits left of the parameter, including the one on the line; 0 if none is sent.
     bits_left: Reg<Bits<5>>,
     /// Set when a supplement begins; cleared when a frame begins.
     in_supplement: Reg<Bit>,
@@ -65,7 +65,7 @@ pub struct CommandSender {
 }
 
 impl CommandSender {
-    /// A sender of everything, or of mode commands only.
+    /// A sender for all commands and supplements, or for mode commands only.
     pub fn new(has_all: bool) -> Self {
         Self::from_parts(CommandSenderParts {
             has_all: Constant::new(has_all),

@@ -1,12 +1,12 @@
-//! Command shape: what belongs to a mode command, from its two triplets alone.
+//! Command shape: the parts of a frame, derived from the two triplets of its mode command.
 //!
 //! ```text
 //! left   right        frame
 //! 000    111          position with F1
 //! 111    000          position with F1, F2, additional data
 //! 010    101          F1 and 40 bits of test values
-//! 010    010          24 bits there, 24 bits back
-//! other  complement   24 bits there, 24 bits back
+//! 010    010          24 bits sent, 24 bits received
+//! other  complement   24 bits sent, 24 bits received
 //! other  the same     position with F1, F2, additional data; supplement
 //! ```
 //!
@@ -21,23 +21,23 @@ use rust_hdl::prelude::*;
 pub struct CommandShape {
     /// Mode command.
     pub command: Signal<In, Bits<6>>,
-    /// It is a mode command that this design sends.
+    /// The command is a mode command that this design sends.
     pub is_known: Signal<Out, Bit>,
-    /// It is 000111 or 111000.
+    /// The command is 000111 or 111000.
     pub is_position: Signal<Out, Bit>,
-    /// What an answer consists of.
+    /// Parts of an answer.
     #[bundle]
     pub answer: AnswerShapeOut,
     /// The answer is 40 bits of test values.
     pub has_test_values: Signal<Out, Bit>,
-    /// The watchdog times its frame: not 101010, 100011 and 011100, as ArtInChip's ENDAT-IF.
+    /// The watchdog applies to the frame: not for 101010, 100011 and 011100, as in ArtInChip's ENDAT-IF.
     pub is_watched: Signal<Out, Bit>,
     has_all: Constant<Bit>,
     /// Upper three bits of the command.
     left: Signal<Local, Bits<3>>,
     /// Lower three bits of the command.
     right: Signal<Local, Bits<3>>,
-    /// Both halves of the command are the same.
+    /// Both halves of the command are equal.
     is_same: Signal<Local, Bit>,
     /// The lower half is the complement of the upper one.
     is_complement: Signal<Local, Bit>,

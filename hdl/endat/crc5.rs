@@ -1,9 +1,9 @@
-//! CRC5 of EnDat (x^5+x^3+x+1, preset 11111, inverted), parallel: of an answer as it comes, of the stored word, and of a fixed length.
+//! CRC5 of EnDat (x^5+x^3+x+1, preset 11111, inverted), parallel: of an answer while it is received, of the stored word, and of a fixed length.
 //!
-//! Every form comes from one definition, the residues of powers of x. The order of x modulo the generator is 15,
-//! so what a bit contributes depends only on its distance from the last covered bit, modulo 15; zeros above the frame
-//! contribute nothing; and the preset contributes one of 15 constants, chosen by the number of covered bits modulo 15.
-//! That makes the run-time length nearly as cheap as a fixed one.
+//! Every form derives from one definition, the residues of powers of x. The order of x modulo the generator is 15,
+//! so the contribution of a bit depends only on its distance from the last covered bit, modulo 15. Zeros above the frame
+//! contribute nothing. The preset contributes one of 15 constants, chosen by the number of covered bits modulo 15.
+//! So a run-time length costs hardly more than a fixed one.
 //!
 //! Ref: TI motor-control SDK (polynomial, order of the bits); Liu et al., "Angle encoder data acquisition system
 //! based on FPGA", 2024 (five equations for 31 bits, equal to the result of this block for that length).
@@ -39,12 +39,12 @@ pub const fn times_x_power(register: u8, power: usize) -> u8 {
     r
 }
 
-/// What a covered bit adds to the CRC when `distance` more covered bits follow it.
+/// Contribution of a covered bit to the CRC when `distance` more covered bits follow it.
 pub const fn contribution(distance: usize) -> u8 {
     times_x_power(CRC5_POLYNOMIAL, distance)
 }
 
-/// What preset and inversion add to the CRC of `covered_bits` bits.
+/// Contribution of preset and inversion to the CRC of `covered_bits` bits.
 pub const fn constant_term(covered_bits: usize) -> u8 {
     times_x_power(CRC5_PRESET, covered_bits) ^ 0x1F
 }
@@ -56,28 +56,28 @@ pub fn parity_mask(crc_bit: usize, width: usize) -> u128 {
         .fold(0, |mask, i| mask | 1 << i)
 }
 
-/// Parallel CRC5 of a word whose last bit has just come in at place 4, 19, 34 or 49, with zeros below its first bit.
+/// Parallel CRC5 of a word whose last bit has just entered at place 4, 19, 34 or 49, with zeros below its first bit.
 ///
-/// What a bit contributes depends on its distance from the last one, modulo 15; that one stands at place 4, modulo 15. So the word folded to
-/// 15 bits gives five parities that are the same for every width, and preset and inversion add one of 15 constants.
+/// The contribution of a bit depends on its distance from the last one, modulo 15; the last bit is at place 4, modulo 15. So the word folded to
+/// 15 bits gives five parities, equal for every width, and preset and inversion add one of 15 constants.
 #[derive(LogicBlock, Block)]
 pub struct Crc5Word {
     /// The word, its last bit at one of the four places.
     pub word: Signal<In, Bits<50>>,
     /// Number of its bits modulo 15, 0..=14.
     pub covered: Signal<In, Bits<4>>,
-    /// The CRC as it would be sent; bit 4 goes first.
+    /// The CRC as transmitted; bit 4 goes first.
     pub crc: Signal<Out, Bits<5>>,
     mask: Vec<Constant<Bits<15>>>,
     weight: Vec<Constant<Bits<5>>>,
     constant: Vec<Constant<Bits<5>>>,
     /// The word folded to 15 bits.
     folded: Signal<Local, Bits<15>>,
-    /// The CRC as its parts are added.
+    /// Partial sum of the CRC.
     sum: Signal<Local, Bits<5>>,
 }
 
-/// Place of the last bit of a word as it comes in, modulo the order of x.
+/// Place where a word's last bit enters, modulo the order of x.
 const LAST_PLACE: usize = 4;
 
 impl Default for Crc5Word {
@@ -160,18 +160,18 @@ impl Logic for Crc5Word {
     }
 }
 
-/// Parallel CRC5 check of the stored word, first bit at bit 0, of any width: the guard beside [`Crc5Word`].
+/// Parallel CRC5 check of the stored word, first bit at bit 0, of any width: the guard in addition to [`Crc5Word`].
 ///
-/// A CRC counts distances from the last bit, the word from the first one. So both sides of the equation are divided by the power of x
-/// that lies between: the word's side becomes five fixed parities (folded to 15 bits, the order of x), and what the received CRC bits
-/// are worth is added up as they come, with a power of 1/x that goes on with each bit of the answer.
+/// A CRC counts distances from the last bit, the stored word from the first one. So both sides of the equation are divided by the power of x
+/// between the two. The word's side becomes five fixed parities (folded to 15 bits, the order of x). The received CRC bits
+/// are added as they arrive, each with its power of 1/x, which advances with each bit of the answer.
 #[derive(LogicBlock, Block)]
 pub struct Crc5Check {
     /// System clock.
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: a new answer.
+    /// Strobe: a new answer begins.
     pub clear: Signal<In, Bit>,
     /// Strobe: a bit of the word has been sampled.
     pub word_bit: Signal<In, Bit>,
@@ -189,7 +189,7 @@ pub struct Crc5Check {
     pub f1: Signal<In, Bit>,
     /// Error bit 2.
     pub f2: Signal<In, Bit>,
-    /// Word, error bits and received CRC fit each other.
+    /// Word, error bits and received CRC are consistent.
     pub is_ok: Signal<Out, Bit>,
     /// Power of 1/x for the next bit of the answer; 1 at the beginning of an answer.
     #[start(1.into())]
@@ -199,9 +199,9 @@ pub struct Crc5Check {
     mask: Vec<Constant<Bits<15>>>,
     weight: Vec<Constant<Bits<5>>>,
     term: Vec<Constant<Bits<5>>>,
-    /// What a set error bit adds that is next to the word.
+    /// Contribution of a set error bit next to the word.
     first: Constant<Bits<5>>,
-    /// What a set F1 adds if F2 follows.
+    /// Contribution of a set F1 if F2 follows.
     second: Constant<Bits<5>>,
     /// 1/x modulo the generator.
     step: Constant<Bits<5>>,
@@ -209,7 +209,7 @@ pub struct Crc5Check {
     one: Constant<Bits<5>>,
     /// The word folded to 15 bits.
     folded: Signal<Local, Bits<15>>,
-    /// Sum over preset, error bits and word; equal to `received` if all fit.
+    /// Sum over preset, error bits and word; equal to `received` if they are consistent.
     sum: Signal<Local, Bits<5>>,
 }
 
@@ -228,7 +228,7 @@ impl Default for Crc5Check {
         Self::from_parts(Crc5CheckParts {
             mask: (0..5).map(mask).collect(),
             weight: crc_bit_weights(),
-            // The preset in front of the error bits, of which there are 0, 1 or 2.
+            // The preset in front of 0, 1 or 2 error bits.
             term: (0..3)
                 .map(|error_bits| constant(divided_by_x_power(CRC5_PRESET, 4 - error_bits)))
                 .collect(),
@@ -294,15 +294,15 @@ fn crc_bit_weights() -> Vec<Constant<Bits<5>>> {
 /// Parallel CRC5 of exactly `N` bits: five XOR equations.
 #[derive(LogicBlock, Block)]
 pub struct Crc5Fixed<const N: usize> {
-    /// The covered bits; the top one was received first, as the published equations have it.
+    /// The covered bits; the top one was received first, as in the published equations.
     pub word: Signal<In, Bits<N>>,
     /// The CRC as transmitted; bit 4 goes first.
     pub crc: Signal<Out, Bits<5>>,
     mask: Vec<Constant<Bits<N>>>,
     weight: Vec<Constant<Bits<5>>>,
-    /// What preset and inversion add.
+    /// Contribution of preset and inversion.
     constant: Constant<Bits<5>>,
-    /// The CRC as its parts are added.
+    /// Partial sum of the CRC.
     sum: Signal<Local, Bits<5>>,
 }
 

@@ -1,8 +1,8 @@
-//! What a channel can do, and its times that are fixed when the design is made.
+//! Features of a channel, and its times that are fixed at generation.
 
 use crate::endat::timing;
 
-/// Times of a channel that no encoder changes, fixed when the design is made.
+/// Times of a channel that do not depend on the encoder, fixed at generation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedTimes {
     /// Clock period of the frame that measures the propagation delay, in system clock cycles (1..=2047).
@@ -11,15 +11,15 @@ pub struct FixedTimes {
     pub ready_low_cycles: u64,
     /// Quiet time after an aborted frame, in microseconds (1..=65535).
     pub abort_us: u64,
-    /// From the edge behind an answer to the look for additional data, in system clock cycles (1..=255).
+    /// From the edge after an answer to the look for additional data, in system clock cycles (1..=255).
     pub separator_cycles: u64,
     /// Clock LOW between an answer and its supplement, in system clock cycles (1..=65535).
     pub park_cycles: u64,
     /// Longest wait for the answer to a command with a parameter, in microseconds (1..=65535).
     pub parameter_timeout_us: u64,
-    /// Longest wait within a frame for anything but a start bit, in microseconds (a power of two, 1..=32768).
+    /// Longest wait within a frame, except for a start bit, in microseconds (a power of two, 1..=32768).
     pub frame_us: u64,
-    /// Longest recovery time after a frame of a request's own, in system clock cycles (1..=65535).
+    /// Longest recovery time after a separate frame of a request, in system clock cycles (1..=65535).
     pub own_recovery_limit_cycles: u64,
     /// Shortest recovery time after such a frame, in system clock cycles (0..=8191).
     pub own_recovery_min_cycles: u64,
@@ -48,32 +48,32 @@ impl FixedTimes {
     }
 }
 
-/// What a channel can do besides triggered positions; what it cannot takes no logic.
+/// Features of a channel in addition to triggered positions; a disabled one takes no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Features {
     /// All mode commands and additional data.
     pub requests: bool,
-    /// Stuck lines, absent and late encoders told apart, watchdog, shortest recovery time.
+    /// Distinguishes stuck lines, absent and late encoders; watchdog, shortest recovery time.
     pub diagnosis: bool,
     /// Continuous clock (000111).
     pub continuous: bool,
-    /// Phase from the mean over many edges, from each start bit or from a register; majority of three samples.
+    /// Phase from the mean of many edges, from each start bit or from a register; majority of three samples.
     pub alignment: bool,
-    /// Margin of the samples is measured (in [`crate::encoder_port`], with alignment).
+    /// Measures the margin of the samples (in [`crate::encoder_port`], with alignment).
     pub margin: bool,
-    /// Data is looked at on both edges of the system clock.
+    /// Samples DATA on both edges of the system clock.
     pub double_edge: bool,
-    /// A second receiver takes each answer, too, and is compared (not with `double_edge`).
+    /// A second receiver receives each answer, too, and is compared (not with `double_edge`).
     pub second_receiver: bool,
-    /// Stored bits are checked, so that an upset of a register shows.
+    /// Checks stored bits, so that an upset of a register is detected.
     pub upset_guards: bool,
-    /// A position that is withdrawn gives way to the one before it; without this no position is valid then.
+    /// The previous position replaces one that is withdrawn; without this no position is valid then.
     pub restore: bool,
 }
 
 impl Features {
-    /// Whether the receiver's word keeps the position before while the encoder may withdraw the new one: it has no other use then, but for
-    /// additional data, for a running clock and for a comparison.
+    /// True if the receiver's word keeps the previous position while the encoder may withdraw the new one. The word is free then, except for
+    /// additional data, a running clock and a comparison.
     pub const fn swaps(self) -> bool {
         self.restore && !self.requests && !self.continuous && !self.second_receiver
     }
@@ -91,7 +91,7 @@ impl Features {
         restore: false,
     };
 
-    /// The same as in a card: a position that is withdrawn gives way to the one before it.
+    /// As in a card: the previous position replaces one that is withdrawn.
     pub const CARD: Self = Self {
         restore: true,
         ..Self::NONE
@@ -103,7 +103,7 @@ impl Features {
         ..Self::CARD
     };
 
-    /// Everything of the protocol, as in a card.
+    /// All protocol features, as in a card.
     pub const PROTOCOL: Self = Self {
         requests: true,
         diagnosis: true,

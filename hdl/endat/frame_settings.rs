@@ -1,13 +1,13 @@
-//! Settings of a frame, a guard: the inputs as they were when it began.
+//! Settings of a frame, a guard: holds the inputs as they were when the frame began.
 //!
 //! ```text
 //! trigger     _____/\__________________________
 //! is_at_rest  ~~~~~~~\________________/~~~~~~~
-//! inputs      A   B    C                        whatever they do
-//! *_now       . A   B                  . C      the frame has those of the cycle with the trigger
+//! inputs      A   B    C                        may change at any time
+//! *_now       . A   B                  . C      the frame uses those of the cycle with the trigger
 //! ```
 //!
-//! The parity of command and width, which decide where a position is in the answer, is taken as the frame begins.
+//! Command and width decide where a position is in the answer; their parity is stored when the frame begins.
 
 use crate::endat::ports::FrameLimitsOut;
 use crate::ports::PortSettingsIn;
@@ -23,11 +23,11 @@ pub struct FrameSettings {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// No frame is under way or begins: the inputs are followed.
+    /// No frame is under way or begins: the outputs follow the inputs.
     pub is_at_rest: Signal<In, Bit>,
     /// Strobe: a frame begins.
     pub start: Signal<In, Bit>,
-    /// Mode command of the frame, wherever it comes from.
+    /// Mode command of the frame, from any source.
     pub frame_command: Signal<In, Bits<6>>,
     /// Settings of one channel, as the host has written them.
     #[bundle]
@@ -38,7 +38,7 @@ pub struct FrameSettings {
     pub watchdog_us: Signal<In, Bits<12>>,
     /// EnDat clock period of the frame.
     pub period_cycles_now: Signal<Out, Bits<11>>,
-    /// Mode command of a triggered frame, as that began.
+    /// Mode command of a triggered frame when it began.
     pub command_now: Signal<Out, Bits<6>>,
     /// Position width of the frame.
     pub position_bits_now: Signal<Out, Bits<6>>,
@@ -48,14 +48,14 @@ pub struct FrameSettings {
     pub filter_half_now: Signal<Out, Bit>,
     /// Start window of the frame.
     pub start_window_cycles_now: Signal<Out, Bits<6>>,
-    /// How long the parts of the frame may take.
+    /// Time limits for the parts of a frame.
     #[bundle("_now")]
     pub limits: FrameLimitsOut,
-    /// Command or width are not what they were when the frame began.
+    /// Command or width have changed since the frame began.
     pub is_upset: Signal<Out, Bit>,
-    /// EnDat clock period; follows the input between two frames, as all settings do here.
+    /// EnDat clock period; follows the input between two frames, as all settings below do.
     period_held: Reg<Bits<11>>,
-    /// How much longer the first low phase is, in system clock cycles.
+    /// Extension of the first low phase, in system clock cycles.
     first_low_extra_held: Reg<Bits<11>>,
     /// Mode command of a triggered frame.
     command_held: Reg<Bits<6>>,

@@ -1,4 +1,4 @@
-//! Line delay: knows how long an answer takes to come back, and says when to sample.
+//! Line delay: measures how long an answer takes to come back, and times the samples.
 //!
 //! ```text
 //! rise        /\_________/\_________/\______      clock edges leaving the receiver
@@ -11,7 +11,7 @@
 //! (`acquire`), and followed by one cycle per frame afterwards. Sampling from this tracked phase tolerates twice
 //! the jitter that sampling from the start edge of the same frame would.
 //!
-//! A rising edge of the clock and the cell that it launched are a delay apart: `pulse` and `sample` say when each counts.
+//! A rising edge of the clock and the cell that it launched are one delay apart: `pulse` and `sample` mark when each counts.
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, `endat_main.asm`.
 
@@ -35,7 +35,7 @@ pub struct LineDelay {
     /// How the cells of a frame run.
     #[bundle]
     pub control: CellControlIn,
-    /// No clock pulse has been sent whose cell has not ended.
+    /// The cells of all clock pulses that were sent have ended.
     pub none_under_way: Signal<In, Bit>,
     /// This frame measures the delay instead of using it.
     pub acquire: Signal<In, Bit>,
@@ -47,38 +47,38 @@ pub struct LineDelay {
     pub rise: Signal<In, Bit>,
     /// Strobe: the data line has just gone high, or has changed within the answer.
     pub data_edge: Signal<In, Bit>,
-    /// This edge is half a cycle later than others (double edge only).
+    /// This edge is half a cycle later than normal (double edge only).
     pub edge_second: Signal<In, Bit>,
-    /// The cell is one of the answer behind the start bit: its edge counts (alignment only).
+    /// The cell belongs to the answer after the start bit: its edge counts (alignment only).
     pub in_answer: Signal<In, Bit>,
-    /// Source of the phase (alignment only): 0 mean over many edges, 1 fixed delay, 2 start bit of each frame.
+    /// Source of the phase (alignment only): 0 mean of many edges, 1 fixed delay, 2 start bit of each frame.
     pub mode: Signal<In, Bits<2>>,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
     pub fixed_delay: Signal<In, Bits<15>>,
     /// Strobe, together with `sample`: this sample is a good start bit, follow its edge.
     pub follow: Signal<In, Bit>,
-    /// The clock goes on after the frame: the phase of the running cells follows, too.
+    /// The clock continues after the frame: the phase of the running cells follows, too.
     pub going_on: Signal<In, Bit>,
     /// EnDat clock period, in system clock cycles.
     pub period_cycles: Signal<In, Bits<11>>,
     /// Largest distance of the start edge from its expected place, in system clock cycles.
     pub start_window_cycles: Signal<In, Bits<6>>,
-    /// With `sample`: half a cycle later than others (double edge only).
+    /// With `sample`: half a cycle later than normal (double edge only).
     pub sample_second: Signal<Out, Bit>,
     /// Places of the answer's cells.
     #[bundle]
     pub cells: CellsOut,
     /// Strobe: the middle of the expected place of a data edge.
     pub center: Signal<Out, Bit>,
-    /// The tracked delay is not what was measured: a register was upset. Until it is measured again.
+    /// The tracked delay differs from the measured one: a register was upset. Cleared by the next measurement.
     pub is_upset: Signal<Out, Bit>,
     /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
-    /// The same, mean of many edges, in sixteenths of a cycle (alignment only).
+    /// Tracked delay as the mean of many edges, in sixteenths of a cycle (alignment only).
     pub phase: Signal<Out, Bits<15>>,
     /// Strobe one cycle after `sample`: an edge of the answer has been measured (alignment only).
     pub measured: Signal<Out, Bit>,
-    /// Places from the tracked one to this edge, less one, in two's complement.
+    /// Places from the tracked one to this edge, minus one, in two's complement.
     pub offset: Signal<Out, Bits<8>>,
     half: HalfPeriod,
     /// Tracked propagation delay tD, in system clock cycles; 0 if a phase tracker has it.
@@ -113,7 +113,7 @@ pub struct LineDelay {
     edge_error: Reg<Bits<6>>,
     /// Set when that distance exceeds the start window; cleared with the sample.
     edge_outside: Reg<Bit>,
-    /// High for one cycle after a clock pulse has been sent whose cell counts.
+    /// High for one cycle after a clock pulse was sent whose cell counts.
     pulse_leaves: Reg<Bit>,
     /// Set if the start edge of a running clock was early: the next half of a cell is one cycle shorter.
     shorten: Reg<Bit>,
@@ -141,16 +141,16 @@ pub struct LineDelay {
     step: Signal<Local, Bits<11>>,
     /// High if the data edge of the cell has come.
     edge_now: Signal<Local, Bit>,
-    /// High if no frame runs, or if the clock waits and the cells of all its pulses have ended.
+    /// High if no frame runs, or if the clock is stopped and the cells of all its pulses have ended.
     over: Signal<Local, Bit>,
     tracker: Vec<PhaseTracker>,
-    /// Places from the expected place to the data edge of the last cell, less one, in two's complement.
+    /// Places from the expected place to the data edge of the last cell, minus one, in two's complement.
     offset_now: Reg<Bits<8>>,
     /// High for one cycle after the sample of a cell whose data edge counts.
     measured_now: Reg<Bit>,
-    /// High if the half of a cell began half a cycle later than others (double edge only).
+    /// High if the half of a cell began half a cycle later than normal (double edge only).
     second: Reg<Bit>,
-    /// High if the data edge of the cell came half a cycle later than others (double edge only).
+    /// High if the data edge of the cell came half a cycle later than normal (double edge only).
     edge_place: Reg<Bit>,
     has_guards: Constant<Bit>,
     has_alignment: Constant<Bit>,
@@ -169,15 +169,15 @@ pub struct LineDelay {
     next_cell: Signal<Local, Bit>,
     /// High if the data edge of the cell is after its expected place.
     late_now: Signal<Local, Bit>,
-    /// High if the data edge of the cell comes half a cycle later than others.
+    /// High if the data edge of the cell comes half a cycle later than normal.
     place_now: Signal<Local, Bit>,
-    /// High if the expected place is half a cycle later than others.
+    /// High if the expected place is half a cycle later than normal.
     center_place: Signal<Local, Bit>,
     /// Places between the data edge and its expected place; one less if it is late.
     distance: Signal<Local, Bits<8>>,
     /// High with a sample if the data edge of the cell counts.
     good_edge: Signal<Local, Bit>,
-    /// High while the phase is not known yet: every data edge counts.
+    /// High while the phase is still unknown: every data edge counts.
     is_open: Signal<Local, Bit>,
     /// High if the first cell begins a cycle later: the period is odd and the delay past half a cycle.
     is_later: Signal<Local, Bit>,

@@ -1,4 +1,4 @@
-//! Line health: what only a closer look at the data line tells, and the watchdog over a frame.
+//! Line health: stuck and open data lines, and the watchdog of a frame.
 //!
 //! ```text
 //! start       /\_____________________________
@@ -6,12 +6,12 @@
 //! under_way   _/~~~~~~~~~~~~~~~~~~~~\________
 //! expired     ___________________/~~\________    watchdog_us after the start
 //!
-//! probe       ___/~~~~~~~~\__________________    DATA is HIGH at rest: driven LOW for a moment
-//! level       ~~~~~\______/~~~~~~~~~~~~~~~~~~    it follows: nobody else drives it
+//! probe       ___/~~~~~~~~\__________________    DATA is HIGH at rest: driven LOW briefly
+//! level       ~~~~~\______/~~~~~~~~~~~~~~~~~~    it follows: no other driver
 //! ```
 //!
-//! A receiver hears its own mode command, so a frame without any HIGH means that the line, or what listens to it, is stuck.
-//! This asks for a transceiver that keeps listening while it sends.
+//! A receiver receives its own mode command, so a frame without any HIGH means that the line, or its receiver, is stuck.
+//! The transceiver must keep receiving while it sends.
 
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -30,11 +30,11 @@ pub struct LineHealth {
     pub level: Signal<In, Bit>,
     /// Strobe: a frame begins.
     pub start: Signal<In, Bit>,
-    /// A frame that is watched goes on, or its recovery time.
+    /// A watched frame, or its recovery time, is under way.
     pub under_way: Signal<In, Bit>,
     /// Longest time from the start to the end of the recovery time; 0 = not watched.
     pub watchdog_us: Signal<In, Bits<12>>,
-    /// Strobe: the line has been driven LOW for long enough; `level` says whether it follows.
+    /// Strobe: the line has been driven LOW for long enough; `level` shows whether it follows.
     pub probed: Signal<In, Bit>,
     /// DATA has been LOW for tR.
     pub is_ready: Signal<In, Bit>,
@@ -42,9 +42,9 @@ pub struct LineHealth {
     pub expired: Signal<Out, Bit>,
     /// DATA has not been HIGH since the start.
     pub never_high: Signal<Out, Bit>,
-    /// DATA is HIGH because nobody drives it.
+    /// DATA is HIGH because no device drives it.
     pub is_open: Signal<Out, Bit>,
-    /// DATA is HIGH whatever the receiver does.
+    /// DATA is HIGH even when the receiver drives it LOW.
     pub is_stuck: Signal<Out, Bit>,
     /// Microseconds since the frame began.
     passed_us: Reg<Bits<12>>,

@@ -1,4 +1,4 @@
-//! Line monitor: settings of the phase, and how much margin the samples have, as the host reads it.
+//! Line monitor: settings of the sampling phase, and timing margin of the samples, for the host.
 //!
 //! ```text
 //! edge_measured, edge_offset --> earliest and latest of the frame --(over)--> of the last frame
@@ -9,7 +9,7 @@
 //! Offsets count places (system clock cycles, or half ones with the double edge) from the expected place of an edge: 0 and -1 are
 //! nearest to it, and half a bit is between them and the sample.
 //!
-//! What is measured is worth the same at every clock; the settings take effect between two frames.
+//! The measurements do not depend on the EnDat clock; the settings take effect between two frames.
 
 use crate::endat::features::Features;
 use endat_macros::kernel;
@@ -20,20 +20,20 @@ use rust_hdl::prelude::*;
 
 pub use endat_regs::line::word;
 
-/// What the settings are after reset.
+/// Settings after reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineStart {
-    /// Source of the phase: 0 mean over many edges, 1 fixed delay, 2 start bit of each frame.
+    /// Source of the phase: 0 mean of many edges, 1 fixed delay, 2 start bit of each frame.
     pub phase_mode: u64,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle (15 bits).
     pub fixed_delay: u64,
     /// Majority of three samples.
     pub majority: bool,
-    /// Drift that gives alarm, in sixteenths of a system clock cycle (12 bits); 0 = none.
+    /// Drift that raises the alarm, in sixteenths of a system clock cycle (12 bits); 0 = none.
     pub drift_limit: u64,
-    /// Offset that gives alarm, in places (7 bits); 0 = none.
+    /// Offset that raises the alarm, in places (7 bits); 0 = none.
     pub offset_limit: u64,
-    /// The histogram is cleared after reset: it may begin with anything.
+    /// The histogram is cleared after reset: its RAM may start with any content.
     pub clears: bool,
 }
 
@@ -44,15 +44,15 @@ pub struct LineMonitor {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// A frame is under way: settings stay.
+    /// A frame is under way: settings are frozen.
     pub busy: Signal<In, Bit>,
     /// Strobe: an edge of the answer has been measured.
     pub edge_measured: Signal<In, Bit>,
-    /// Its offset, in two's complement.
+    /// Offset of the edge, in two's complement.
     pub edge_offset: Signal<In, Bits<8>>,
     /// Strobe: a frame has ended.
     pub over: Signal<In, Bit>,
-    /// Its position was not good.
+    /// The frame had no good position.
     pub over_bad: Signal<In, Bit>,
     /// Strobe: a glitch has been removed.
     pub glitch: Signal<In, Bit>,
@@ -66,19 +66,19 @@ pub struct LineMonitor {
     pub fixed_delay: Signal<Out, Bits<15>>,
     /// Majority of three samples.
     pub majority: Signal<Out, Bit>,
-    /// Drift or offset beyond its limit since cleared.
+    /// Drift or offset has exceeded its limit since cleared.
     pub alarm: Signal<Out, Bit>,
-    /// Word that the host accesses; stays put for 8 cycles at least.
+    /// Word that the host accesses; stable for at least 8 cycles.
     pub host_address: Signal<In, Bits<6>>,
-    /// Strobe: read it.
+    /// Strobe: read the word.
     pub host_read: Signal<In, Bit>,
     /// The word read.
     pub host_word: Signal<Out, Bits<32>>,
-    /// Strobe: write one half of it.
+    /// Strobe: write one half of the word.
     pub host_write: Signal<In, Bit>,
-    /// The half: 1 = high.
+    /// Half to write: 1 = high.
     pub host_half: Signal<In, Bit>,
-    /// What to write.
+    /// Data to write.
     pub host_data: Signal<In, Bits<16>>,
     /// Source of the phase as the host has written it.
     #[given]
@@ -106,11 +106,11 @@ pub struct LineMonitor {
     /// Fixed delay in use; copied between two frames.
     #[given]
     delay: Reg<Bits<15>>,
-    /// Word that the host has read.
+    /// Word read by the host.
     word: Reg<Bits<32>>,
     /// Set when the host reads; cleared when the histogram is not being counted.
     read_wanted: Reg<Bit>,
-    /// High for one cycle: the host's word is that of the histogram.
+    /// High for one cycle: the host's word comes from the histogram.
     read_ram: Reg<Bit>,
     /// Earliest edge of the frame; offset with its sign bit inverted, as in the other registers of edges.
     earliest: Reg<Bits<8>>,
@@ -161,7 +161,7 @@ pub struct LineMonitor {
     histogram: Vec<Memory<32, 5>>,
     /// Word that the host accesses.
     at: Signal<Local, Bits<6>>,
-    /// Value of this word, but for the histogram.
+    /// Value of this word, except for the histogram.
     shown: Signal<Local, Bits<32>>,
     /// Offset of the edge with its sign bit inverted: earlier is smaller.
     biased: Signal<Local, Bits<8>>,
@@ -206,7 +206,7 @@ impl Logic for LineMonitor {
         self.answer_host();
     }
 
-    /// Settings: written in halves, taken over between two frames.
+    /// Settings: written in halves, take effect between two frames.
     fn take_settings(&mut self) {
         self.at.next = self.host_address.val();
         self.clear.d.next = false;
@@ -242,9 +242,9 @@ impl Logic for LineMonitor {
         self.fixed_delay.next = self.delay.q.val();
     }
 
-    /// Earliest and latest edge, of a frame and of all.
+    /// Earliest and latest edge, of a frame and since clear.
     fn watch_edges(&mut self) {
-        // Offsets with their sign turned round: earlier is smaller.
+        // Offsets with inverted sign bit: earlier is smaller.
         self.biased.next = self.edge_offset.val() ^ 0x80;
         if self.edge_measured.val() & self.has_margin.val() {
             if self.is_first.q.val() {
@@ -282,7 +282,7 @@ impl Logic for LineMonitor {
         }
     }
 
-    /// Alarms: the tracked delay has drifted, or an edge was too far from its place.
+    /// Alarms: the tracked delay has drifted, or an edge was too far from its expected place.
     fn raise_alarms(&mut self) {
         self.was_calibrated.d.next = self.calibrated.val();
         if self.calibrated.val() & !self.was_calibrated.q.val() {
@@ -311,7 +311,7 @@ impl Logic for LineMonitor {
         self.alarm.next = self.drift_alarm.q.val() | self.offset_alarm.q.val();
     }
 
-    /// Histogram: an edge that comes while the one before is counted is not.
+    /// Histogram: an edge that arrives while the previous one is counted is skipped.
     fn count_edges(&mut self) {
         self.scaled.next = self.size.val() >> self.bin_shift.q.val();
         self.next_bin.next = self.scaled.val().get_bits::<5>(0) | 0x10;
@@ -353,7 +353,7 @@ impl Logic for LineMonitor {
         }
     }
 
-    /// Reading: the RAM is asked when it is not counting.
+    /// Reading: the RAM is read while no edge is counted.
     fn answer_host(&mut self) {
         self.shown.next = 0.into();
         match self.at.val().index() {

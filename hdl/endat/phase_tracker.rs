@@ -1,23 +1,23 @@
-//! Phase tracker: where the data edges come, to a part of a cycle, from the mean over many of them.
+//! Phase tracker: measures the place of the data edges to a fraction of a cycle, as the mean of many edges.
 //!
 //! ```text
-//! edge of this cell: places after the tracked one -->(+)--> 1/8, 1/32 or 1/512 of it --> phase (12 bits before the point, 12 behind)
+//! edge of this cell: places after the tracked one -->(+)--> 1/8, 1/32 or 1/512 of it --> phase (12 bits before the point, 12 after)
 //!                                                   - ^                                    |
-//!                                                     +------------ part behind the point -+--> delay for the cells
+//!                                                     +------------ fraction --------------+--> delay for the cells
 //! ```
 //!
-//! A place is where the data line is looked at: a system clock cycle, or half of one. The start edge of the first frame sets the phase.
+//! A place is one sampling time of the data line: a system clock cycle, or half of one. The start edge of the first frame sets the phase.
 //! The edges after it in that frame count for an eighth, those of the other frames at the calibration clock for a 32nd, and
-//! from then on for a 512th: then jitter averages out, and a cable that grows warm is followed.
+//! from then on for a 512th. So jitter averages out, and the phase follows temperature drift of the cable.
 //!
-//! In mode `fixed` the delay comes from a register, and the phase stays as it is.
+//! In mode `fixed` the delay comes from a register, and the phase does not change.
 
 use crate::endat::features::Features;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Bits of the phase behind the point.
+/// Fraction bits of the phase.
 pub const FRACTION_BITS: u32 = 12;
 
 /// Mean place of the data edges of one channel.
@@ -37,7 +37,7 @@ pub struct PhaseTracker {
     pub is_later: Signal<In, Bit>,
     /// Strobe: a cell with a good edge ends.
     pub edge_strobe: Signal<In, Bit>,
-    /// Places from the middle of its expected place to the edge, less one (two's complement).
+    /// Places from the middle of its expected place to the edge, minus one (two's complement).
     pub offset: Signal<In, Bits<8>>,
     /// The frame measures the delay.
     pub acquire: Signal<In, Bit>,
@@ -49,9 +49,9 @@ pub struct PhaseTracker {
     pub fixed_delay: Signal<In, Bits<15>>,
     /// Delay for the cells, rounded down.
     pub delay_places: Signal<Out, Bits<12>>,
-    /// It is more than half a place above that.
+    /// The delay is more than half a place above `delay_places`.
     pub past_half: Signal<Out, Bit>,
-    /// The delay may be another one in the next cycle.
+    /// The delay may change in the next cycle.
     pub moves: Signal<Out, Bit>,
     /// Tracked delay, in sixteenths of a system clock cycle.
     pub phase: Signal<Out, Bits<15>>,
@@ -66,17 +66,17 @@ pub struct PhaseTracker {
     has_double: Constant<Bit>,
     /// Upper bits of a negative distance.
     negative: Constant<Bits<32>>,
-    /// Upper bit of a negative step.
+    /// Upper bits of a negative step.
     top: Constant<Bits<24>>,
     /// Distance from the phase to the edge, with 12 bits after the point; one less in the last place.
     innovation: Signal<Local, Bits<32>>,
-    /// Part of this distance by which the phase moves, less one.
+    /// Step of the phase: a part of this distance, minus one.
     step: Signal<Local, Bits<24>>,
     /// Places from the phase to the middle of the cells, modulo 32.
     moved: Signal<Local, Bits<5>>,
     /// The same number with its sign extended.
     moved_by: Signal<Local, Bits<8>>,
-    /// Places from the phase, rounded down, to the edge, less one.
+    /// Places from the phase, rounded down, to the edge, minus one.
     distance: Signal<Local, Bits<8>>,
 }
 
@@ -97,7 +97,7 @@ impl Logic for PhaseTracker {
         self.take.d.next = self.edge_strobe.val() & !self.is_fixed.val();
         self.by.d.next = self.offset.val();
 
-        // The phase moves on while the cells stay where they began.
+        // The phase moves while the cells keep their start.
         if self.starts.val() {
             self.middle.d.next = self.delay_places.val().get_bits::<5>(0)
                 + bit_cast::<5, 1>(self.is_later.val().into());
@@ -112,7 +112,7 @@ impl Logic for PhaseTracker {
         }
         self.distance.next = self.by.q.val() + self.moved_by.val();
 
-        // Edge minus phase: what is before the point is counted, what is behind it is known. One less each, made up for below.
+        // Edge minus phase: the integer part is counted, the fraction is known. Each is one less, compensated below.
         self.innovation.next = bit_cast::<32, 12>(!self.place.q.val().get_bits::<12>(0))
             | (bit_cast::<32, 8>(self.distance.val()) << 12);
         if self.distance.val().get_bit(7) {

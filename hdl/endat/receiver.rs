@@ -1,4 +1,4 @@
-//! Receiver: takes the bits of an answer from the start bit to the last CRC bit.
+//! Receiver: receives the bits of an answer from the start bit to the last CRC bit.
 //!
 //! ```text
 //! field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
@@ -7,21 +7,21 @@
 //! ```
 //!
 //! <!-- with has_all -->
-//! A block of additional data goes the same way behind the CRC: `Separator`, `Payload` of 24 bits, `Crc`. So does the answer to a
-//! command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
-//! cells are only counted.
+//! A block of additional data passes the same fields after the CRC: `Separator`, `Payload` of 24 bits, `Crc`. So does the answer to a
+//! command with a parameter, without F1 and F2; words that arrive MSB first are reversed where they are read. During a supplement
+//! the receiver only counts cells.
 //!
 //! <!-- end -->
-//! The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
-//! with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word before
+//! The position arrives LSB first. It is shifted in at one of four places. While the CRC bits arrive it is shifted down to bit 0
+//! in at most 16 system clock cycles. So no barrel shifter is needed, and F1 and F2 drop off the end. The parallel CRC5 covers the word before
 //! that: at all four places its last bit has the same distance from a multiple of 15.
 //! `left` counts cells down to the end of the frame, `to_send` the clock pulses that they need: the difference is under way. The
-//! clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
+//! clock generator stops when no pulse is left to send. So the encoder receives exactly the rising edges it needs, and never more than the
 //! shortest answer while its start bit may still be on the cable.
 //! <!-- with has_guards -->
 //!
-//! `under_way` counts the difference once more: at the end of the frame all three agree, unless one was upset. And a second parallel CRC5
-//! looks at the word where it is stored, for as long as it stands there: what is published is what was checked.
+//! `under_way` counts the difference once more: at the end of the frame all three agree, unless one was upset. A second parallel CRC5
+//! checks the word in its register for as long as it is stored there, so the published bits are the checked bits.
 //! <!-- end -->
 
 pub mod field;
@@ -44,7 +44,7 @@ pub struct Receiver {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// What a receiver is told of the frame.
+    /// Control of a receiver during a frame.
     #[bundle]
     pub control: ControlIn,
     /// Strobe of each rising clock edge.
@@ -56,32 +56,32 @@ pub struct Receiver {
     pub level: Signal<In, Bit>,
     /// Bits between error bits and CRC, 1..=48.
     pub payload_bits: Signal<In, Bits<6>>,
-    /// What an answer consists of.
+    /// Parts of an answer.
     #[bundle]
     pub shape: AnswerShapeIn,
     /// Blocks of additional data that follow the position, 0..=2.
     pub infos: Signal<In, Bits<2>>,
-    /// Strobe: what is HIGH now is a recovery time, which may be over in the middle of this cell.
+    /// Strobe: the recovery time is HIGH now, and may end in the middle of this cell.
     pub look: Signal<In, Bit>,
     /// Mode command that was sent.
     pub command: Signal<In, Bits<6>>,
-    /// Strobe, between two frames: the word and the CRC take these.
+    /// Strobe, between two frames: load the word and the CRC.
     pub put: Signal<In, Bit>,
-    /// For the word.
+    /// Word to load.
     pub put_word: Signal<In, Bits<48>>,
-    /// For the CRC.
+    /// CRC to load.
     pub put_crc: Signal<In, Bits<5>>,
-    /// How far a receiver is.
+    /// Progress of a receiver.
     #[bundle]
     pub progress: ProgressOut,
-    /// What an answer says of itself.
+    /// Checks of an answer.
     #[bundle]
     pub verdict: AnswerCheckOut,
     /// Payload, bit 0 = the bit received first, zeros above its width.
     pub payload: Signal<Out, Bits<48>>,
     /// CRC as received; bit 4 came first.
     pub crc_received: Signal<Out, Bits<5>>,
-    /// CRC computed from the bits as they came.
+    /// CRC computed from the bits as received.
     pub crc_computed: Signal<Out, Bits<5>>,
     #[start]
     crc: Crc5Word,
@@ -90,17 +90,17 @@ pub struct Receiver {
     /// Part of the answer to which the next sample belongs.
     #[start(Field::Done)]
     field: Reg<Field>,
-    /// Cells until the end of the frame; those that wait for the start bit are not counted.
+    /// Cells until the end of the frame; cells that wait for the start bit do not count.
     left: Reg<Bits<7>>,
-    /// The cell that comes is the last one of the payload.
+    /// The current cell is the last one of the payload.
     payload_ends: Reg<Bit>,
-    /// The cell that comes is the last one of the CRC.
+    /// The current cell is the last one of the CRC.
     crc_ends: Reg<Bit>,
     /// Clock pulses that the frame still needs.
     to_send: Reg<Bits<7>>,
-    /// Pulses on the cable, modulo 8: those that are sent and whose cell has not ended (upset guards only).
+    /// Pulses on the cable, modulo 8: sent pulses whose cell has not ended (upset guards only).
     under_way: Reg<Bits<3>>,
-    /// Bits of the answer as they come in; the payload from bit 0 on when they are aligned.
+    /// Bits of the answer as they arrive; the payload from bit 0 on when aligned.
     word: Reg<Bits<50>>,
     /// Cells that are skipped, then bits that are shifted in, modulo 15.
     covered: Reg<Bits<4>>,
@@ -111,7 +111,7 @@ pub struct Receiver {
     f2_bit: Reg<Bit>,
     /// CRC as received; bit 4 came first.
     crc_bits: Reg<Bits<5>>,
-    /// CRC of the bits as they came; valid one cycle after `take_crc`.
+    /// CRC of the bits as received; valid one cycle after `take_crc`.
     crc_calc: Reg<Bits<5>>,
     /// High for one cycle when the last bit of the payload is in the word: its CRC is stored.
     take_crc: Reg<Bit>,
@@ -129,9 +129,9 @@ pub struct Receiver {
     used: Reg<Bit>,
     /// High if the counts of cells and pulses agree that no cell is left.
     ended: Reg<Bit>,
-    /// High if the received CRC is that of the bits as they came.
+    /// High if the received CRC equals that of the bits as received.
     crc_equal: Reg<Bit>,
-    /// High if the received CRC is that of the word as it is stored (upset guards only).
+    /// High if the received CRC equals that of the stored word (upset guards only).
     stored_fits: Reg<Bit>,
     /// High for one cycle after a start bit whose edge is outside the window.
     refused: Reg<Bit>,
@@ -155,11 +155,11 @@ pub struct Receiver {
     missing: Reg<Bit>,
     /// High for one cycle after the last cell of the supplement.
     supplement_over: Reg<Bit>,
-    /// High for one cycle: the cell after the CRC is LOW while the clock goes on.
+    /// High for one cycle: the cell after the CRC is LOW while the clock continues.
     low_gap: Reg<Bit>,
-    /// High for one cycle: the second cell after the CRC is HIGH while the clock goes on.
+    /// High for one cycle: the second cell after the CRC is HIGH while the clock continues.
     high_gap: Reg<Bit>,
-    /// High for one cycle: the cell after the CRC is HIGH while the clock goes on, as it should be.
+    /// High for one cycle: the cell after the CRC is HIGH while the clock continues, as it should be.
     good_gap: Reg<Bit>,
     /// High for one cycle after a LOW separator: a block of additional data begins.
     low_separator: Reg<Bit>,
@@ -167,7 +167,7 @@ pub struct Receiver {
     separator_then: Reg<Bit>,
     /// `low_separator`, two cycles later: the word is cleared for the block.
     new_block: Reg<Bit>,
-    /// The first seven samples from the first HIGH on, or as many as have come.
+    /// The first seven samples from the first HIGH on, or fewer at the start.
     heard: Reg<Bits<7>>,
     /// Set when `heard` is the mode command, then LOW; cleared when a frame or the next answer begins.
     echo: Reg<Bit>,
@@ -200,7 +200,7 @@ pub struct Receiver {
     skip_step: Signal<Local, Bit>,
     /// High with the sample of a bit that the CRC covers.
     covered_bit: Signal<Local, Bit>,
-    /// High if the received CRC is that of the bits as they came.
+    /// High if the received CRC equals that of the bits as received.
     crc_fits: Signal<Local, Bit>,
     /// High if the word is shifted by one bit.
     shift: Signal<Local, Bit>,
@@ -236,7 +236,7 @@ pub struct Receiver {
     width: Signal<Local, Bits<6>>,
     /// Cells that follow the CRC of this answer or block.
     cells_after: Signal<Local, Bits<7>>,
-    /// Cells of the frame besides its payload.
+    /// Cells of the frame, excluding its payload.
     cells_around: Signal<Local, Bits<7>>,
 }
 
@@ -253,7 +253,7 @@ impl Receiver {
             has_continuous: Constant::new(features.continuous),
             has_double: Constant::new(features.double_edge),
             skip_from: Constant::new((order - lead).into()),
-            // 34 cells are 4 and two more rounds of the counter.
+            // 34 cells are 4 plus two rounds of the counter.
             long_skip_from: Constant::new(
                 (3 * order - lead - u64::from(protocol::PARAMETER_BITS)).into(),
             ),

@@ -1,15 +1,15 @@
-//! Second receiver: takes the same answer from the same samples, a cycle later, and tells where the two disagree.
+//! Second receiver: receives the same answer from the same samples, a cycle later, and reports any disagreement.
 //!
 //! ```text
 //! receiver          sample /\____ bit ____/\_____ done /\_____________
 //! second receiver   ________/\____ bit ____/\___________/\____________
-//! differs           __________________________________________________   ~~~ until the next frame, if anything was not the same
+//! differs           __________________________________________________   ~~~ until the next frame, after any difference
 //! ```
 //!
-//! Each cycle the signs of both are compared, and from the end of an answer on its bits, as long as they stay. A cycle apart they are never equal in all
-//! registers, so synthesis cannot make one of them, and what disturbs both at once meets them in different states.
+//! Each cycle the progress of both is compared, and from the end of an answer its bits, while they are stored. One cycle apart the receivers never
+//! have equal registers. So synthesis cannot merge them, and a disturbance of both at once hits different states.
 //!
-//! Shared are synchroniser, filter and sampling point: two of those would see an edge in different cycles, and disagree about nothing.
+//! Synchroniser, filter and sampling point are shared: two copies would see an edge in different cycles and disagree without a fault.
 
 use crate::endat::features::Features;
 use crate::endat::ports::{AnswerCheckIn, AnswerShapeIn, CellsIn, ControlIn, ProgressIn};
@@ -26,7 +26,7 @@ pub struct SecondReceiver {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// What a receiver is told of the frame.
+    /// Control of a receiver during a frame.
     #[bundle]
     pub control: ControlIn,
     /// Strobe of each rising clock edge.
@@ -36,42 +36,42 @@ pub struct SecondReceiver {
     pub cells: CellsIn,
     /// The data line.
     pub level: Signal<In, Bit>,
-    /// Strobe: what is HIGH now is a recovery time.
+    /// Strobe: the recovery time is HIGH now.
     pub look: Signal<In, Bit>,
-    /// Bits between error bits and CRC, 1..=48; this and what follows stays for a frame.
+    /// Bits between error bits and CRC, 1..=48; stable during a frame, as are the inputs below.
     pub payload_bits: Signal<In, Bits<6>>,
-    /// What an answer consists of.
+    /// Parts of an answer.
     #[bundle]
     pub shape: AnswerShapeIn,
-    /// Additional data that follows the position, 0..=2.
+    /// Blocks of additional data that follow the position, 0..=2.
     pub infos: Signal<In, Bits<2>>,
     /// Mode command that was sent.
     pub command: Signal<In, Bits<6>>,
-    /// How far a receiver is.
+    /// Progress of a receiver.
     #[bundle]
     pub progress: ProgressIn,
     /// Payload of the first receiver.
     pub payload: Signal<In, Bits<48>>,
-    /// What an answer says of itself.
+    /// Checks of an answer.
     #[bundle]
     pub check: AnswerCheckIn,
-    /// The CRC that it has received.
+    /// CRC received by the first receiver.
     pub crc_received: Signal<In, Bits<5>>,
-    /// The comparison is to find a difference at the end of each answer, to show that it lives.
+    /// Forces a difference at the end of each answer, to test the comparison.
     pub forced: Signal<In, Bit>,
-    /// The result that is about to be told is good.
+    /// The result to be reported is good.
     pub good: Signal<In, Bit>,
-    /// Its primary cause.
+    /// Primary cause of the first receiver.
     pub cause: Signal<In, Bits<5>>,
-    /// Its raw flags.
+    /// Raw flags of the first receiver.
     pub flags: Signal<In, Bits<20>>,
     /// The two have disagreed in this frame.
     pub differs: Signal<Out, Bit>,
-    /// The result is good, and the two agree to the very cycle in which it is told.
+    /// The result is good, and the two agree up to and including the cycle in which it is reported.
     pub good_told: Signal<Out, Bit>,
-    /// Its primary cause.
+    /// Primary cause to report.
     pub cause_told: Signal<Out, Bits<5>>,
-    /// Its raw flags.
+    /// Raw flags to report.
     pub flags_told: Signal<Out, Bits<20>>,
     receiver: Receiver,
     /// `inputs`, one cycle later.
@@ -90,9 +90,9 @@ pub struct SecondReceiver {
     inputs: Signal<Local, Bits<11>>,
     /// Progress of the first receiver.
     signs: Signal<Local, Bits<12>>,
-    /// High if the progress of the two receivers is not the same.
+    /// High if the progress of the two receivers differs.
     apart: Signal<Local, Bit>,
-    /// High if payload, error bits or CRC of the two receivers are not the same.
+    /// High if payload, error bits or CRC of the two receivers differ.
     bits_differ: Signal<Local, Bit>,
     /// High for one cycle: an answer or block is complete in the second receiver.
     ends: Signal<Local, Bit>,
@@ -103,7 +103,7 @@ pub struct SecondReceiver {
 }
 
 impl SecondReceiver {
-    /// One for a channel with these features.
+    /// A second receiver for a channel with these features.
     pub fn new(features: Features) -> Self {
         Self::from_parts(SecondReceiverParts {
             receiver: Receiver::new(Features {
@@ -221,7 +221,7 @@ impl Logic for SecondReceiver {
             | (self.crc_received.val() != self.receiver.crc_received.val())
             | (self.check.crc_ok.val() != self.receiver.verdict.crc_ok.val())
             | (self.check.stored_ok.val() != self.receiver.verdict.stored_ok.val());
-        // What has come stays where it is until a new block, or frame, begins.
+        // Received bits stay in place until a new block, or frame, begins.
         self.ends.next = self.receiver.progress.done.val() | self.receiver.progress.info_done.val();
         if self.ends.val() {
             self.holds.d.next = true;

@@ -17,19 +17,19 @@
 //! program       first-> word held   second-> word held   first-> word held
 //! ```
 //!
-//! **Each instruction takes three cycles.** In the first the program memory is read, in the second the operand, at the end of the third
-//! all that the instruction does is done. Whatever needs no operand from RAM is decided and computed in the second cycle already (`value`), so the third is one
-//! addition: of A or 0 (`base`), and of the RAM's word or `value`.
+//! **Each instruction takes three cycles.** The first reads the program memory, the second reads the operand, and all effects are complete at the
+//! end of the third. The second cycle already computes everything that needs no operand from RAM (`value`). So the third is one
+//! addition: A or 0 (`base`), plus the word from RAM or `value`.
 //!
-//! **Shared**, the program runs twice, with A, X, C, link, counter and RAM for each of the two. They take turns, an instruction each, and one's Execute is
-//! the other's Fetch: four cycles for an instruction. What runs stands in the registers of the first, the other one in those called `other_`; at the end of
-//! Execute they change places, so nothing has to be chosen between them.
+//! **Shared**, the program runs twice, with separate A, X, C, link, counter and RAM. The two runs alternate instruction by instruction, and the Execute of one
+//! is the Fetch of the other: four cycles for an instruction. The active run is in the first set of registers, the waiting one in those named `other_`. At the
+//! end of Execute they are exchanged, so no multiplexer is needed.
 //!
-//! **The host** reads and writes in cycles in which the machine does not use that side of the RAM, so neither ever waits for the other. RAM
+//! **The host** reads and writes in cycles in which the machine does not use that side of the RAM, so neither waits for the other. RAM
 //! is 128 words of 32 bits for the host, 256 of 16 bits for the machine: word 2n is the low half, word 2n + 1 the high half of word n.
 //!
 //! **Instructions** are `op` (bits 19..16) and `imm` (bits 15..0). An operand `m` is the RAM word at `imm[7:0]`, plus X if
-//! `imm[8]` (wrapping); with `imm[9]` the carry C takes part.
+//! `imm[8]` (wrapping); with `imm[9]` the carry C is included.
 //!
 //! | op | name | effect |
 //! |---|---|---|
@@ -44,10 +44,10 @@
 //! | 11 | IN | A = port `imm[4:0]` |
 //! | 12 | OUT | port `imm[4:0]` = A |
 //! | 13 | J | to `imm[9:0]` if `imm[15:13]` is 0 or: 1 and A = 0, 2 and A != 0, 3 and C, 4 and not C, 5 and `A[15]` |
-//! | 14 | CALL | link = address of the next one, to `imm[9:0]` |
-//! | 15 | `imm[3:0]` | 0 RET: to link; 1 TAX: X = `A[7:0]`; 2 LINK: A = link; 3 JMPA: to `A[9:0]`; 4 SHR: A = A / 2, C = `A[0]`; 5 SWAP: the bytes of A change places |
+//! | 14 | CALL | link = address of the next instruction, to `imm[9:0]` |
+//! | 15 | `imm[3:0]` | 0 RET: to link; 1 TAX: X = `A[7:0]`; 2 LINK: A = link; 3 JMPA: to `A[9:0]`; 4 SHR: A = A / 2, C = `A[0]`; 5 SWAP: exchange the bytes of A |
 //!
-//! Everything else goes to 0 and does nothing more, so a program that runs astray starts again. After `0x7ff` comes 0.
+//! All other codes jump to 0 and do nothing else, so a program that runs astray restarts. Address 0 follows `0x7ff`.
 
 pub mod assembler;
 mod kernel;
@@ -69,62 +69,62 @@ pub const RAM_WORDS: usize = 256;
 pub const PORTS: usize = 32;
 /// Cycles of an instruction.
 pub const INSTRUCTION_CYCLES: u64 = 3;
-/// Cycles from one instruction of a program to its next where two take turns.
+/// Cycles from one instruction of a run to its next if two runs share the machine.
 pub const SHARED_CYCLES: u64 = 4;
 
-/// What the machine is doing.
+/// Cycle of an instruction.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum Cycle {
     /// The program memory is read.
     Fetch,
-    /// The instruction is there; its operand is read.
+    /// The instruction is available; its operand is read.
     Operand,
     /// Its effects are stored.
     Execute,
 }
 
-/// Accumulator machine of 16 bits with its program and 128 words of 32 bits that it shares with a host.
+/// 16-bit accumulator machine with its program, and 128 words of 32 bits that it shares with a host.
 #[derive(LogicBlock, Block)]
 pub struct Sequencer {
     /// System clock.
     pub clock: Signal<In, Clock>,
-    /// Synchronous reset: A, X, C and link become 0, the programs begin at 0. RAM stays as it is.
+    /// Synchronous reset: clears A, X, C and link, and the programs begin at 0. RAM is not cleared.
     pub reset: Signal<In, Bit>,
-    /// Strobe: the instruction at 0 begins in the next cycle, in both programs. One that is in its third cycle is still done, an earlier one is
-    /// not. A, X, C and link stay as they are.
+    /// Strobe: both programs continue at 0 in the next cycle. An instruction in its third cycle is completed, an earlier one is
+    /// dropped. A, X, C and link do not change.
     pub restart: Signal<In, Bit>,
     /// Port of an IN or OUT, throughout its second and third cycle.
     pub port_address: Signal<Out, Bits<5>>,
     /// High for one cycle, the second of an IN: the port at `port_address` is read.
     pub port_read: Signal<Out, Bit>,
-    /// In the cycle after `port_read` what the port had to say then, otherwise 0.
+    /// In the cycle after `port_read`: the value of the port; otherwise 0.
     pub port_in: Signal<In, Bits<16>>,
-    /// The port is one of the second program, in the same cycles as `port_address`; low where there is only one.
+    /// The port belongs to the second program, in the same cycles as `port_address`; low if there is only one.
     pub port_second: Signal<Out, Bit>,
-    /// A: what an OUT writes.
+    /// A, the value that an OUT writes.
     pub port_out: Signal<Out, Bits<16>>,
     /// High for one cycle: `port_out` is for the port at `port_address`.
     pub port_write: Signal<Out, Bit>,
-    /// Word of 32 bits that the host reads or writes; stays put from one strobe to the next, 8 cycles at least.
+    /// 32-bit word that the host reads or writes; stable from one strobe to the next, at least 8 cycles.
     pub host_address: Signal<In, Bits<7>>,
-    /// It is one of the second program. Stays put like `host_address`.
+    /// The word belongs to the second program. Stable like `host_address`.
     pub host_second: Signal<In, Bit>,
     /// Strobe: read the word into `host_word`.
     pub host_read: Signal<In, Bit>,
-    /// Strobe: `host_word` becomes 0; with `host_read`, until the word is here.
+    /// Strobe: clear `host_word`; with `host_read`, until the word is available.
     pub host_clear: Signal<In, Bit>,
-    /// The word as it was at one moment from `host_read` on; it is here from the third cycle after that strobe at the latest, until
-    /// the next one.
+    /// A consistent copy of the word, taken after `host_read`; valid from the third cycle after that strobe at the latest, until
+    /// the next strobe.
     pub host_word: Signal<Out, Bits<32>>,
     /// Strobe: write one half of the word.
     pub host_write: Signal<In, Bit>,
-    /// The half to write: 1 = high. Stays put like `host_address`.
+    /// Half to write: 1 = high. Stable like `host_address`.
     pub host_half: Signal<In, Bit>,
-    /// What to write. Stays put like `host_address`.
+    /// Data to write. Stable like `host_address`.
     pub host_data: Signal<In, Bits<16>>,
     /// The program.
     program: Rom<20, 11>,
-    /// Even words of RAM; those of the second program in its upper half.
+    /// Even words of RAM; the second program has the upper half.
     #[start]
     low: Memory<16, 8>,
     /// Odd words of RAM.
@@ -135,7 +135,7 @@ pub struct Sequencer {
     cycle: Reg<Cycle>,
     /// Address of the instruction.
     counter: Reg<Bits<11>>,
-    /// Address to which RET goes; set by CALL.
+    /// Address for RET; set by CALL.
     link: Reg<Bits<11>>,
     /// A.
     accumulator: Reg<Bits<16>>,
@@ -159,9 +159,9 @@ pub struct Sequencer {
     other_index: Reg<Bits<8>>,
     /// RAM word of the operand.
     address: Reg<Bits<8>>,
-    /// What is added if no word of RAM is.
+    /// Operand of the sum if it is not a word of RAM.
     value: Reg<Bits<16>>,
-    /// What it is added to: A or 0.
+    /// Other operand of the sum: A or 0.
     base: Reg<Bits<16>>,
     /// High in the third cycle if the operand is the word of RAM.
     takes_memory: Reg<Bit>,
@@ -179,7 +179,7 @@ pub struct Sequencer {
     writes_port: Reg<Bit>,
     /// Next address: 0 the following one, 1 the target, 2 the link, 3 A.
     way: Reg<Bits<2>>,
-    /// High in the third cycle if the word is no instruction: the program goes to 0.
+    /// High in the third cycle if the word is not an instruction: the program jumps to 0.
     is_astray: Reg<Bit>,
     /// Set when the host reads; cleared when its word has been read.
     read_pending: Reg<Bit>,
@@ -187,11 +187,11 @@ pub struct Sequencer {
     write_pending: Reg<Bit>,
     /// The RAM was read for the host in the last cycle.
     is_for_host: Reg<Bit>,
-    /// Word that the host has read.
+    /// Word read by the host.
     word: Reg<Bits<32>>,
     /// Operation of the instruction.
     op: Signal<Local, Bits<4>>,
-    /// Lower two bits of the operation: what `logic` is.
+    /// Lower two bits of the operation: selects `logic`.
     choice: Signal<Local, Bits<2>>,
     /// Lower four bits of the instruction: the kind of operation 15.
     special: Signal<Local, Bits<4>>,
@@ -199,7 +199,7 @@ pub struct Sequencer {
     immediate: Signal<Local, Bits<16>>,
     /// High in the third cycle.
     is_execute: Signal<Local, Bit>,
-    /// X if the operand takes part of it, otherwise 0.
+    /// X if the operand is indexed, otherwise 0.
     offset: Signal<Local, Bits<8>>,
     /// RAM word of the operand.
     operand_address: Signal<Local, Bits<8>>,
@@ -215,7 +215,7 @@ pub struct Sequencer {
     is_written: Signal<Local, Bit>,
     /// Value that is written.
     written: Signal<Local, Bits<16>>,
-    /// Result of the instructions that need no word of RAM.
+    /// Result of the instructions that read no word of RAM.
     logic: Signal<Local, Bits<16>>,
     /// High if the instruction uses C, and C is set.
     takes_carry: Signal<Local, Bit>,
@@ -233,7 +233,7 @@ pub struct Sequencer {
     following: Signal<Local, Bits<11>>,
     /// High if the condition of a jump is true.
     is_taken: Signal<Local, Bit>,
-    /// High at the end of a word that is no instruction.
+    /// High at the end of a word that is not an instruction.
     goes_astray: Signal<Local, Bit>,
     /// Address of the next instruction of this program.
     next_counter: Signal<Local, Bits<11>>,
@@ -247,11 +247,11 @@ pub struct Sequencer {
     is_shared: Constant<Bit>,
 }
 
-/// J 0: what stands behind the end of a program.
+/// J 0: fills the memory after the end of a program.
 const START_AGAIN: u64 = 13 << 16;
 
 impl Sequencer {
-    /// A machine that runs `program`, from its first word on, once or, if it is shared, twice; see [`assembler`].
+    /// A machine that runs `program` from its first word, once, or twice if shared; see [`assembler`].
     ///
     /// # Panics
     /// If it has more than [`PROGRAM_WORDS`] words, or one has more than 20 bits.

@@ -1,4 +1,4 @@
-//! Service: requests, additional data, health and initialisation of one channel or two, as a program of the [`Sequencer`].
+//! Service: requests, additional data, health and initialisation of one or two channels, as a program of the [`Sequencer`].
 //!
 //! ```text
 //!               +--> requests, hold-off ------> Channel
@@ -9,12 +9,12 @@
 //!     host: mailbox, name plate, slots, counters
 //! ```
 //!
-//! Positions do not wait for it: a trigger goes to the channel directly, and a request that the program has prepared goes with it.
-//! Where things stand is in [`map`], what is done in [`program`], what a channel has of it in [`channel`].
+//! Positions do not wait for the service: a trigger goes to the channel directly, together with a request that the program has prepared.
+//! [`map`] defines the ports, [`program`] the steps, [`channel`] the part for each channel.
 //!
-//! Two channels share a machine: each has its own run of the program, its own RAM and ports, and an instruction takes four cycles instead of three.
+//! Two channels share a machine: each has a separate run of the program, with separate RAM and ports. An instruction then takes four cycles instead of three.
 //!
-//! A program that does not show for long that it goes its round has gone astray, by an upset: everything begins anew.
+//! A program that stops writing its alive port has gone astray after an upset: all runs restart.
 
 pub mod channel;
 pub mod map;
@@ -28,10 +28,10 @@ use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Channels that a service has room for.
+/// Largest number of channels of a service.
 pub const CHANNELS_SERVED: usize = 2;
 
-/// Service of one channel or two.
+/// Service of one or two channels.
 #[derive(LogicBlock, Block)]
 pub struct Service {
     /// System clock.
@@ -40,31 +40,31 @@ pub struct Service {
     pub reset: Signal<In, Bit>,
     /// One-cycle strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// Port that the program reads or writes, of all channels.
+    /// Port that the program reads or writes, for all channels.
     pub io_address: Signal<Out, Bits<5>>,
-    /// Strobe of each channel: its port is read.
+    /// Strobe of each channel: the program reads its port.
     pub io_read: Vec<Signal<Out, Bit>>,
-    /// In the next cycle what each channel's port had to say, otherwise 0.
+    /// In the next cycle the value of each channel's port; otherwise 0.
     pub io_in: Vec<Signal<In, Bits<16>>>,
-    /// What is written.
+    /// Value to write.
     pub io_out: Signal<Out, Bits<16>>,
-    /// Strobe of each channel: it is written to its port.
+    /// Strobe of each channel: the program writes its port.
     pub io_write: Vec<Signal<Out, Bit>>,
-    /// Word of RAM that the host accesses; stays put from one strobe to the next, 8 cycles at least.
+    /// Word of RAM that the host accesses; stable from one strobe to the next, at least 8 cycles.
     pub host_address: Signal<In, Bits<7>>,
-    /// It is one of the second channel.
+    /// The word belongs to the second channel.
     pub host_second: Signal<In, Bit>,
-    /// Strobe: the host reads it.
+    /// Strobe: the host reads the word.
     pub host_read: Signal<In, Bit>,
-    /// Strobe: the host begins to read something, here or elsewhere.
+    /// Strobe: the host begins to read, from this or any other block.
     pub host_clear: Signal<In, Bit>,
-    /// The word read, from the third cycle after its strobe; 0 if the host has read something else since.
+    /// The word read, from the third cycle after its strobe; 0 if the host has read from another block since.
     pub host_word: Signal<Out, Bits<32>>,
-    /// Strobe: the host writes one half of it.
+    /// Strobe: the host writes one half of the word.
     pub host_write: Signal<In, Bit>,
-    /// The half: 1 = high. Written last, the low one acts.
+    /// Half to write: 1 = high. If written last, the low half acts.
     pub host_half: Signal<In, Bit>,
-    /// What to write.
+    /// Data to write.
     pub host_data: Signal<In, Bits<16>>,
     sequencer: Sequencer,
     /// Microseconds, modulo 65536.
@@ -77,19 +77,19 @@ pub struct Service {
     seen_us: Reg<Bits<16>>,
     /// `time_ms` in the cycle after the program reads it, otherwise 0.
     seen_ms: Reg<Bits<16>>,
-    /// Milliseconds for which each run of the program has not shown that it is alive.
+    /// Milliseconds since each run of the program last wrote its alive port.
     silent_ms: Vec<Reg<Bits<6>>>,
     /// High if the program reads a time.
     is_time: Signal<Local, Bit>,
-    /// What the port of the second channel had to say, otherwise 0.
+    /// Value of the port of the second channel; otherwise 0.
     second_in: Signal<Local, Bits<16>>,
     /// High for one cycle each millisecond.
     is_millisecond: Signal<Local, Bit>,
-    /// One bit for each run of the program: it shows that it is alive.
+    /// One bit for each run of the program: it writes its alive port.
     lives: Signal<Local, Bits<2>>,
-    /// Port that a run writes to show that it is alive.
+    /// Number of the alive port.
     alive_port: Constant<Bits<5>>,
-    /// High if a run has not shown for too long that it is alive: all runs begin anew.
+    /// High if a run has not written its alive port for too long: all runs restart.
     is_stuck: Signal<Local, Bit>,
     /// Milliseconds after which a run is stuck.
     stuck_ms: Constant<Bits<6>>,
@@ -98,7 +98,7 @@ pub struct Service {
 }
 
 impl Service {
-    /// A service that runs the program for these times, for this many channels: one, or [`CHANNELS_SERVED`].
+    /// A service that runs the program for these times, for `channels` channels: one, or [`CHANNELS_SERVED`].
     pub fn new(times: &ServiceTimes, channels: usize) -> Self {
         let is_shared = channels > 1;
         let runs = 1 + usize::from(is_shared);
@@ -157,7 +157,7 @@ impl Logic for Service {
         }
         self.sequencer.restart.next = self.is_stuck.val();
 
-        // Ports 24 and above are the same for all channels: the times.
+        // Ports 24 and above are the times, equal for all channels.
         self.is_time.next = self.sequencer.port_read.val()
             & self.sequencer.port_address.val().get_bits::<2>(3).all();
         self.seen_us.d.next = self.time_us.q.val();

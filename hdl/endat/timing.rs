@@ -1,4 +1,4 @@
-//! Times and rates of EnDat, and the only place where hertz and nanoseconds become system clock cycles.
+//! Times and rates of EnDat; all conversions from hertz and nanoseconds to system clock cycles.
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual (Nov 2014), table of times; HEIDENHAIN Technical Information 383942.
 
@@ -6,12 +6,12 @@
 pub const ENDAT_HZ_MIN: u64 = 100_000;
 /// Fastest EnDat clock with propagation-delay compensation, in hertz (PWM 20).
 pub const ENDAT_HZ_MAX: u64 = 16_000_000;
-/// Clock of the frame that measures the propagation delay, in hertz, unless the configuration says otherwise: its period is longer than
-/// any usual cable's delay (TI, C2000).
+/// Clock of the frame that measures the propagation delay, in hertz, unless configured otherwise: its period is longer than
+/// the delay of any usual cable (TI, C2000).
 pub const CALIBRATION_HZ: u64 = 200_000;
-/// The same for cables whose delay comes near its period, in hertz: the slowest that there is.
+/// Clock for measuring cables whose delay is near that period, in hertz: the slowest EnDat clock.
 pub const LONG_CALIBRATION_HZ: u64 = ENDAT_HZ_MIN;
-/// Longest delay that is measured with a period of [`CALIBRATION_HZ`], in ns: what pins and filter add must fit in, too.
+/// Longest delay that can be measured with a period of [`CALIBRATION_HZ`], in ns, including pins and filter.
 pub const CALIBRATION_DELAY_MAX_NS: u64 = 4_000;
 /// Shortest start time tST that receivers offer, in ns (Renesas; PWM 20: 2 us).
 pub const TST_MIN_NS: u64 = 500;
@@ -27,17 +27,17 @@ pub const RECOVERY_MIN_NS: u64 = 10_000;
 pub const RECOVERY_MAX_NS: u64 = 30_000;
 /// Shortest programmed recovery time, in ns (PWM 20; EnDat 2.2 commands above 1 MHz only).
 pub const SHORT_RECOVERY_MIN_NS: u64 = 1_250;
-/// From the edge behind an answer until it is looked at whether additional data follow, in ns, if the middle of the cell
-/// comes later: half the shortest recovery time, which would be over by then.
+/// From the edge after an answer to the look for additional data, in ns, if the middle of the cell
+/// comes later: half the shortest recovery time, so the recovery time is still running.
 pub const SEPARATOR_NS: u64 = SHORT_RECOVERY_MIN_NS / 2;
 /// Data must have been low for longer than tR before the next frame, in ns (PWM 20).
 pub const READY_LOW_NS: u64 = 500;
 /// Quiet time after an aborted transfer, in microseconds (S2 block, ADDI driver).
 pub const ABORT_US: u64 = 30_000;
-/// Longest wait within a frame for anything but a start bit, in microseconds: more than the longest answer at the slowest clock takes.
-/// Only a receiver that has lost its place waits for so long. A power of two: one bit of the timer tells.
+/// Longest wait within a frame, except for a start bit, in microseconds: more than the longest answer at the slowest clock.
+/// Only a receiver that has lost its place waits for so long. It is a power of two, so that one bit of the timer is enough.
 pub const FRAME_US: u64 = 1 << 12;
-/// How long DATA is driven LOW at rest to see whether it follows, in microseconds (chosen: transceivers take well below one).
+/// Time that DATA is driven LOW at rest to see whether it follows, in microseconds (chosen: transceivers take well below one).
 pub const PROBE_US: u64 = 2;
 /// Time for an open line to rise again after that, in microseconds (chosen: cable of 100 m with ordinary bias resistors).
 pub const SETTLE_US: u64 = 20;
@@ -57,12 +57,12 @@ pub const RESET_MS: u16 = 50;
 pub const WRITE_MS: u16 = 12;
 /// Wait between other EnDat 2.1 commands with a parameter, in ms (TI, ADDI driver: for old encoders).
 pub const PARAMETER_GAP_MS: u16 = 1;
-/// Longest Busy before a request is given up, in ms: access takes up to 12 ms (PWM 20).
+/// Longest Busy before a request fails, in ms: access takes up to 12 ms (PWM 20).
 pub const BUSY_MS: u16 = 50;
-/// Longest wait of a request for the trigger that it rides on, in ms, unless the host says otherwise (chosen: triggers that are slower
-/// than one a second are made by hand).
+/// Longest wait of a request for its trigger, in ms, unless the host changes it (chosen: triggers slower
+/// than one a second are manual).
 pub const REQUEST_WAIT_MS: u16 = 2_000;
-/// Fastest clock of an encoder that knows EnDat 2.1 only, in kHz (PWM 20).
+/// Fastest clock of an encoder that supports EnDat 2.1 only, in kHz (PWM 20).
 pub const ENDAT21_MAX_KHZ: u16 = 2_000;
 /// Largest deviation of the EnDat clock from the one asked for, in parts per million.
 pub const CLOCK_TOLERANCE_PPM: i64 = 5_000;
@@ -70,7 +70,7 @@ pub const CLOCK_TOLERANCE_PPM: i64 = 5_000;
 pub const PULSE_TOLERANCE_PERCENT: u64 = 10;
 /// Fewest system clock cycles in one EnDat clock period that the core can time.
 pub const PERIOD_CYCLES_MIN: u64 = 4;
-/// The same with data looked at on both edges of the system clock.
+/// Fewest system clock cycles if data is sampled on both edges of the system clock.
 pub const PERIOD_CYCLES_MIN_DOUBLE: u64 = 2;
 
 /// Cycles of a `system_hz` clock that last at least `ns` (rounded up: for minimum times).
@@ -106,17 +106,17 @@ pub const fn calibration_hz(delay_ns: u64) -> u64 {
     }
 }
 
-/// The measured recovery time that is still taken for one of at least `ns`: a sixteenth less, for jitter and measuring.
+/// The shortest measured recovery time that is accepted for `ns`: a sixteenth less, for jitter and measurement.
 pub const fn recovery_min_cycles(ns: u64, system_hz: u64) -> u64 {
     cycles_at_most(ns - ns / 16, system_hz)
 }
 
-/// The fastest clock that measures a delay of at most `delay_ns`: as much of its period is left for pins and edges as of the usual one.
+/// The fastest clock that measures a delay of at most `delay_ns`: it leaves the same part of its period for pins and edges as the default.
 pub const fn calibration_most_hz(delay_ns: u64) -> u64 {
     CALIBRATION_HZ * CALIBRATION_DELAY_MAX_NS / delay_ns
 }
 
-/// Nanoseconds that `cycles` of a `system_hz` clock last, rounded to the nearest.
+/// Duration of `cycles` of a `system_hz` clock in nanoseconds, rounded to the nearest.
 pub const fn cycles_to_ns(cycles: u64, system_hz: u64) -> u64 {
     ((cycles as u128 * 1_000_000_000 + system_hz as u128 / 2) / system_hz as u128) as u64
 }

@@ -1,4 +1,4 @@
-//! Transaction: the order of one frame, all its time-outs, and what went wrong.
+//! Transaction: the sequence of a frame, all its time-outs, and its faults.
 //!
 //! ```text
 //! wire      NotReady Ready FirstLow Frame ................ Tail Recovery NotReady Ready
@@ -7,15 +7,15 @@
 //! done      _______________________________________________/\_________________________
 //! ```
 //!
-//! With a supplement the clock stays LOW after the last CRC bit (`Park`), and `Frame` goes on until its cells are over.
+//! With a supplement the clock stays LOW after the last CRC bit (`Park`), and `Frame` continues until its cells are over.
 //!
 //! A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame at the full
-//! clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by `own`, for a request that needs the line for
-//! itself. What becomes of the first is published; what becomes of either is told with `over`.
+//! clock follows automatically, and its result is the trigger's. A trigger begins a frame, or `own` does, for a request with a separate
+//! frame. The result of a triggered frame is published; `over` reports the outcome of every frame.
 //!
-//! Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
-//! off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
-//! between two frames means that something was plugged: the delay is measured again.
+//! Every wait has a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
+//! off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. If DATA was HIGH
+//! between two frames, an encoder may have been plugged in: the delay is measured again.
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
 
@@ -50,7 +50,7 @@ pub struct Transaction {
     pub reset: Signal<In, Bit>,
     /// One-cycle strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// What begins the next frame, and what it is.
+    /// Start of the next frame, and its parameters.
     #[bundle]
     pub next_frame: NextFrameIn,
     /// The delay comes from a register: no frame measures it.
@@ -62,52 +62,52 @@ pub struct Transaction {
     pub cells: CellsIn,
     /// Strobe: middle of the expected place of a data edge.
     pub center: Signal<In, Bit>,
-    /// How far a receiver is.
+    /// Progress of a receiver.
     #[bundle]
     pub progress: ProgressIn,
-    /// What an answer consists of.
+    /// Parts of an answer.
     #[bundle]
     pub shape: AnswerShapeIn,
-    /// The watchdog times the frame under way.
+    /// The watchdog applies to the frame under way.
     pub is_watched: Signal<In, Bit>,
-    /// Settings of the frame are not what they were at its start.
+    /// Settings of the frame have changed since its start.
     pub settings_upset: Signal<In, Bit>,
-    /// What an answer says of itself.
+    /// Checks of an answer.
     #[bundle]
     pub check: AnswerCheckIn,
     /// Strobe one cycle before each rising clock edge.
     pub will_rise: Signal<In, Bit>,
-    /// The tracked delay is not what was measured.
+    /// The tracked delay differs from the measured one.
     pub delay_upset: Signal<In, Bit>,
-    /// How long the parts of a frame may take.
+    /// Time limits for the parts of a frame.
     #[bundle]
     pub limits: FrameLimitsIn,
-    /// What a receiver is told of the frame.
+    /// Control of a receiver during a frame.
     #[bundle]
     pub control: ControlOut,
-    /// How the cells of a frame run.
+    /// Timing control of the cells of a frame.
     #[bundle]
     pub cell_control: CellControlOut,
     /// Keeps the clock low.
     pub hold_low: Signal<Out, Bit>,
     /// Keeps the clock high: no frame, or all its edges have been sent.
     pub stop: Signal<Out, Bit>,
-    /// Drives the line LOW, to see whether it follows.
+    /// Drives the line LOW to test whether it follows.
     pub probe: Signal<Out, Bit>,
-    /// It has just done so, or does.
+    /// A probe is under way, or has just ended.
     pub is_probed: Signal<Out, Bit>,
-    /// A trigger would not be taken.
+    /// A trigger would be lost.
     pub busy: Signal<Out, Bit>,
-    /// What has become of a frame.
+    /// Outcome of a frame.
     #[bundle]
     pub told: ToldOut,
-    /// Strobe, in the same cycle: a frame is begun, or refused.
+    /// Strobe, in the same cycle: a frame begins, or is refused.
     pub begun: Signal<Out, Bit>,
-    /// No frame is under way, and all that there is to tell of the last one has been told.
+    /// No frame is under way, and the last one has been reported completely.
     pub is_at_rest: Signal<Out, Bit>,
-    /// Strobe: a frame has ended in whatever way, `cause` and `flags` are valid.
+    /// Strobe: a frame has ended, normally or not; `cause` and `flags` are valid.
     pub over: Signal<Out, Bit>,
-    /// Strobe: a trigger has been lost.
+    /// Strobe: a trigger is lost.
     pub displaced: Signal<Out, Bit>,
     /// The propagation delay is known.
     pub calibrated: Signal<Out, Bit>,
@@ -171,7 +171,7 @@ pub struct Transaction {
     was_running: Reg<Bit>,
     /// High if the first low phase of a frame is longer than the others.
     extra: Reg<Bit>,
-    /// High while CLOCK stays HIGH: no frame runs, or the frame is given up, or the running clock is left.
+    /// High while CLOCK stays HIGH: no frame runs, or the frame is aborted, or the running clock stops.
     #[start(true)]
     stopping: Reg<Bit>,
     /// Set when the delay is measured; cleared by an abort, two wrong CRCs in a row, `afresh` or a fixed delay.
@@ -180,7 +180,7 @@ pub struct Transaction {
     acquiring: Reg<Bit>,
     /// High if the frame runs at the calibration clock; set or cleared with `accept`, cleared after the tail.
     is_slow: Reg<Bit>,
-    /// Frames of four that have measured the delay; 0 after an abort, two wrong CRCs in a row or `afresh`.
+    /// Measuring frames so far, of four; 0 after an abort, two wrong CRCs in a row or `afresh`.
     passes: Reg<Bits<2>>,
     /// Set when the cell after the answer has been sampled in `Recovery`; cleared when a frame begins.
     tail_sampled: Reg<Bit>,
@@ -196,15 +196,15 @@ pub struct Transaction {
     was_hunting: Reg<Bit>,
     /// `center` in the cycle before.
     was_center: Reg<Bit>,
-    /// Set when a missing start bit is reported and the clock goes on; cleared by an abort or the next frame.
+    /// Set when a missing start bit is reported and the clock continues; cleared by an abort or the next frame.
     late: Reg<Bit>,
-    /// High while DATA is driven LOW in `Abort` to see whether the line follows.
+    /// High while DATA is driven LOW in `Abort` to test whether the line follows.
     probing: Reg<Bit>,
     /// High from the end of a probe until the line has settled.
     settling: Reg<Bit>,
-    /// High while the clock goes on from one answer to the next.
+    /// High while the clock continues from one answer to the next.
     runs: Vec<ProtectedBit>,
-    /// High while the clock goes on from one answer to the next; low without that feature.
+    /// High while the clock continues from one answer to the next; low without that feature.
     going: Signal<Local, Bit>,
     _runs: usize,
     /// High from the end of a running clock until its quiet time is over; that is shorter than after an abort.
@@ -216,7 +216,7 @@ pub struct Transaction {
     plugged: Reg<Bit>,
     /// High for one cycle after `rise_back`: the timer restarts with the cycles that have passed since.
     is_back: Reg<Bit>,
-    /// High for one cycle after a running clock has been left.
+    /// High for one cycle after a running clock has stopped.
     left: Reg<Bit>,
     /// High if DATA has been HIGH since the last microsecond tick.
     high_at_tick: Reg<Bit>,
@@ -226,7 +226,7 @@ pub struct Transaction {
     measuring: Reg<Bit>,
     /// High from the end of a measuring frame until the frame begins that brings the trigger's position.
     once_more: Reg<Bit>,
-    /// High from the start of a frame until it ends or is given up.
+    /// High from the start of a frame until it ends or is aborted.
     under_way: Reg<Bit>,
     /// Limit of the timer in this phase.
     limit: Signal<Local, Bits<16>>,
@@ -243,7 +243,7 @@ pub struct Transaction {
     accept: Signal<Local, Bit>,
     /// High if the frame, or the wait for one, ends with the fault in `found`.
     give_up: Signal<Local, Bit>,
-    /// High if a trigger in this cycle is not lost: it begins a frame, or reports at once why not.
+    /// High if a trigger in this cycle is not lost: it begins a frame, or reports a fault at once.
     idle: Signal<Local, Bit>,
     /// High if a trigger, an owed position or a request asks for a frame.
     wanted: Signal<Local, Bit>,
@@ -251,13 +251,13 @@ pub struct Transaction {
     triggered: Signal<Local, Bit>,
     /// High for one cycle: this trigger has a result without a frame.
     refuse: Signal<Local, Bit>,
-    /// High for one cycle: the frame has ended without being given up.
+    /// High for one cycle: the frame has ended without an abort.
     normal_end: Signal<Local, Bit>,
     /// High while CLOCK is LOW between the answer and its supplement.
     parking: Signal<Local, Bit>,
-    /// High if the start bit has come and all pulses of the frame are sent; low before a supplement.
+    /// High if the start bit has been received and all pulses of the frame are sent; low before a supplement.
     sent: Signal<Local, Bit>,
-    /// High if the frame is a request's, not a trigger's.
+    /// High if the frame belongs to a request, not to a trigger.
     own: Signal<Local, Bit>,
     /// Flags of the faults found in this cycle.
     found: Signal<Local, Bits<20>>,
@@ -265,7 +265,7 @@ pub struct Transaction {
     not_low: Signal<Local, Bits<20>>,
     /// Flags for a missing start bit.
     no_start: Signal<Local, Bits<20>>,
-    /// High for one cycle: a missing start bit is reported, and the clock goes on to find a late one.
+    /// High for one cycle: a missing start bit is reported, and the clock continues to detect a late one.
     announce: Signal<Local, Bit>,
     /// High for one cycle: the answer and its CRC have been received.
     answer_taken: Signal<Local, Bit>,
@@ -279,7 +279,7 @@ pub struct Transaction {
     known: Signal<Local, Bit>,
     /// High with `give_up` if the frame has its result already.
     found_late: Signal<Local, Bit>,
-    /// High for one cycle: the running clock is left.
+    /// High for one cycle: the running clock stops.
     leave: Signal<Local, Bit>,
     /// High for one cycle: a trigger is lost.
     lost: Signal<Local, Bit>,
@@ -289,7 +289,7 @@ pub struct Transaction {
     proof: Signal<Local, Bit>,
     /// High if a frame or its result is outstanding; between two frames this means an upset register.
     vanished: Signal<Local, Bit>,
-    /// High if the delay must be measured again: on request, after a plug or after an upset.
+    /// High if the delay must be measured again: on request, after an encoder change or after an upset.
     afresh: Signal<Local, Bit>,
 }
 

@@ -1,13 +1,13 @@
 //! Places of the register table, by name, in a kernel:
 //!
-//! | written | what it is |
+//! | macro | value |
 //! |---|---|
-//! | `field!(word, block.register.field)` | that field of a word; a bit, where it is one |
-//! | `half!(half, block.register.field)` | the same, of the half of 16 bits that has the field |
-//! | `place!(value, block.register.field)` | a word with the value in that place, and 0 elsewhere |
+//! | `field!(word, block.register.field)` | that field of a word; a bit, if one bit wide |
+//! | `half!(half, block.register.field)` | that field of the half word of 16 bits that contains it |
+//! | `place!(value, block.register.field)` | a word with the value in that place, and 0 in all other bits |
 //! | `offset!(block.register)` | the word's place in its block; as a pattern, too |
 //!
-//! rust-hdl's kernels take literals only, so the names become numbers here, before it sees them.
+//! rust-hdl's kernels accept only literals, so this macro replaces the names by numbers first.
 
 use endat_regs::{Field, Register};
 use proc_macro2::{Literal, TokenStream};
@@ -45,7 +45,7 @@ impl Parse for Named {
     }
 }
 
-/// One of `all` by its name; the error says which there are.
+/// One of `all` by its name; the error lists the alternatives.
 fn one<T>(
     all: &'static [T],
     name: &Ident,
@@ -62,7 +62,7 @@ fn one<T>(
     })
 }
 
-/// Bits of half a word, as a RAM has it.
+/// Bits of half a word, as in a RAM.
 const HALF_BITS: usize = 16;
 
 impl Named {
@@ -137,7 +137,7 @@ impl VisitMut for Places {
                 *expr = plain;
             }
         }
-        // The value that is placed may contain such macros, too.
+        // The placed value may contain such macros, too.
         visit_expr_mut(self, expr);
     }
 
@@ -150,7 +150,7 @@ impl VisitMut for Places {
     }
 }
 
-/// Puts the numbers in for the names.
+/// Replaces the names by numbers.
 pub fn resolve(kernel: &mut ItemImpl) -> syn::Result<()> {
     let mut places = Places::default();
     places.visit_item_impl_mut(kernel);
@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(resolved(named), resolved(numbered));
     }
 
-    /// Catches a wrong width or place, a bit that is read as a vector, half a word taken for the other.
+    /// Catches a wrong width or place, a bit read as a vector, and the wrong half of a word.
     #[test]
     fn names_are_the_numbers_of_the_table() {
         same(

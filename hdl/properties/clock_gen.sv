@@ -5,7 +5,7 @@ reg [10:0] f_age_cycles; initial f_age_cycles = 11'd2046;
 reg [9:0] f_shortest; initial f_shortest = 10'd0;
 wire [9:0] f_half = period_cycles[10:1];
 wire [9:0] f_shortest_now = (f_half < f_shortest) ? f_half : f_shortest;
-// what the timer has counted so far, by what it says is left
+// cycles counted by the timer so far, from the cycles left
 wire [9:0] f_count = f_half + {9'd0, level & period_cycles[0]} + 10'd2 - half_left_cycles;
 reg f_past_valid; initial f_past_valid = 1'b0;
 reg f_reset; reg f_start;

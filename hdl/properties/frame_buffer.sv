@@ -18,7 +18,7 @@ always @(posedge clock) begin
     if (byte_end & !in_tail) f_crc <= f_crc_of(f_crc, byte_held, 4'd8);
     if (!writing) f_crc <= 16'hffff;
 end
-// as the port says: what the set gives is there in time, and stays
+// according to the port: the byte from the set is ready in time, and stays
 always @* begin
     assume ((f_cycle < 4'd5) | (f_cycle == 4'd15) | (set_byte == f_byte));
 end
@@ -44,7 +44,7 @@ end
 wire [12:0] f_waits = (start_at - read_at) & MASK;
 wire [12:0] f_frame = (write_at - start_at) & MASK;
 wire f_closed = !writing | ((at[6:3] == TAIL_BLOCK) & at[2]);
-// as the port says: who takes a byte has seen that one is there
+// according to the port: a byte is taken only after it is ready
 always @* assume (!take | ready);
 wire f_settles = writing & f_closed & (cycle_at == 4'd0);
 always @* begin

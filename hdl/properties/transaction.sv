@@ -22,7 +22,7 @@ always @(posedge clock) begin
     f_owed <= !reset & (f_taken | (f_owed & !publish));
 end
 `ifndef FORMAL_ANY_STATE
-// requests have frames of their own, and a clock that goes on has results without triggers
+// requests have separate frames, and a continuous clock has results without triggers
 always @* if (!HAS_ALL & !HAS_CONTINUOUS) begin
     one_result_per_trigger: assert (!f_taken | !f_owed | publish);
     one_result_per_trigger_asked: assert (!publish | f_owed);
@@ -74,7 +74,7 @@ function [2:0] f_rank (input [2:0] of);
         default: f_rank = 3'd0;
     endcase
 endfunction
-// a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
+// a supplement, a continuous clock and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
 wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
 wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
 wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !starting;

@@ -1,15 +1,15 @@
 //! Receiver for encoders with SSI, the synchronous serial interface.
 //!
 //! ```text
-//! clk   ~~~~~\_/~\_/~\_ ... _/~\_/~~~~~~~~~~~~~~~~~~~~~~    HIGH at rest; one falling edge more than there are bits
+//! clk   ~~~~~\_/~\_/~\_ ... _/~\_/~~~~~~~~~~~~~~~~~~~~~~    HIGH at rest; one more falling edge than bits
 //! data  ~~~~~~~~~<msb ><    ...  ><lsb>\___________/~~~~    HIGH at rest; a bit from each rising edge on, then LOW for the
 //!            ^ taken by the encoder                         recovery time tm
 //! ```
 //!
-//! Each bit is taken where the clock rises for the next one, so that cable and encoder have a whole period for it. A frame that goes on within
-//! tm brings the same position once more, after one LOW bit: two copies that differ give no position.
+//! Each bit is sampled at the next rising edge of the clock, so that cable and encoder have a whole period for it. A frame that continues within
+//! tm repeats the same position, after one LOW bit; if the two copies differ there is no position.
 //!
-//! Reading order: [`protocol`] and [`cause`] (facts), [`asked`] (what a configuration asks for), [`specials`] (bits that are not position),
+//! Reading order: [`protocol`] and [`cause`] (facts), [`asked`] (request of a configuration), [`specials`] (bits that are not position),
 //! [`port`] (an encoder as a channel of a card).
 
 pub mod asked;

@@ -4,7 +4,7 @@ use crate::endat::service::program::{self, step_name};
 use crate::protocol::ModeCommand;
 use crate::protocols::{Spoken, TFormatSpec};
 
-/// The card of the tests: two unlike channels, a UART of 8 cycles per bit.
+/// The card of the tests: two different channels, a UART with 8 cycles per bit.
 pub fn test_config() -> CardConfig {
     let first = ChannelSpec {
         clock_hz: 3_125_000,
@@ -100,7 +100,7 @@ fn a_t_format_channel_starts_with_its_own_numbers() {
     assert!(blocks(&test_config()).all(|b| b.name != "t_format"));
 }
 
-/// Catches a start value of a field that was renamed, which would silently be 0.
+/// Catches a start value for a renamed field, which would be 0 without an error.
 #[test]
 fn every_start_value_is_of_a_field() {
     for (index, (path, _)) in STARTS.iter().enumerate() {
@@ -114,7 +114,7 @@ fn every_start_value_is_of_a_field() {
     }
 }
 
-/// Catches a step that is inserted in one list and not in the other.
+/// Catches a step that one list has and the other has not.
 #[test]
 fn steps_are_those_of_the_initialisation() {
     let steps = service::STEPS;

@@ -48,14 +48,14 @@
 //   endat_data1_oe  out   1  Driver enable of the EnDat data line.
 //   endat_data0_i   in    1  EnDat data from the transceiver, asynchronous.
 //   endat_data1_i   in    1  EnDat data from the transceiver, asynchronous.
-//   led_status_o    out   1  Blinks: slowly = well, quickly = the last result of a channel is an error.
+//   led_status_o    out   1  Blinks: slowly = good, quickly = the last result of a channel is an error.
 //   led_channel0_o  out   1  The channel's last result is a good position.
 //   led_channel1_o  out   1  The channel's last result is a good position.
 
 `timescale 1ns / 1ps
 `default_nettype none
 
-// The whole core with a UART to the host; the number of channels is that of channels.
+// The whole core with a UART to the host; channels sets the number of channels.
 module s6_two_channel (
     // System clock.
     input  wire         clk_i,
@@ -83,7 +83,7 @@ module s6_two_channel (
     input  wire         endat_data0_i,
     // EnDat data from the transceiver, asynchronous.
     input  wire         endat_data1_i,
-    // Blinks: slowly = well, quickly = the last result of a channel is an error.
+    // Blinks: slowly = good, quickly = the last result of a channel is an error.
     output wire         led_status_o,
     // The channel's last result is a good position.
     output wire         led_channel0_o,

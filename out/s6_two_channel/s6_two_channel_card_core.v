@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Core of a card: encoder ports, each for EnDat or T-format, triggers and registers. A front connects the registers to a host:
+// Core of a card: encoder ports, triggers and registers. A front connects the registers to a host:
 // Card with a UART, the tops in bus with another bus.
 //
 // trigger_i -> Trigger --+--> EncoderPort 0 -> endat_clk0_o, endat_data0_o, endat_data0_oe <- endat_data0_i
@@ -14,10 +14,10 @@
 //               |     ChannelRegisters 0, 1
 //               |             ^
 //               +------- RegisterBank <-> the front: word_address, access, read_byte, done, ...
-//               +--> Stream, if there is one: sets of results, by register or pushed through the front
-//               +--> DirectOutput 0, 1, Interrupt, if there are any: to logic and a processor in the same device
+// +--> Stream (optional): sets of results, by register or pushed through the front
+// +--> DirectOutput 0, 1, Interrupt (optional): to logic and a processor in the same device
 //
-// led_status_o blinks slowly while every channel is well, quickly while the last result of one is an error;
+// led_status_o blinks slowly if every channel is good, quickly if the last result of one is an error;
 // led_channelN_o is on while the channel's last result is a good position.
 module s6_two_channel_card_core (
     // System clock.
@@ -28,36 +28,35 @@ module s6_two_channel_card_core (
     input  wire         trigger_i,
     // Strobe each microsecond.
     output wire         tick_us,
-    // Word address; what stood there in the cycle before access counts until done.
+    // Word address; the value in the cycle before access applies until done.
     input  wire  [10:0] word_address,
-    // The front's address fits word_address; otherwise a read gives 0 and a write does nothing. It counts like the address.
+    // The front's address fits word_address; otherwise a read gives 0 and a write has no effect. Timing as for the address.
     input  wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     input  wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
-    // nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Ignored before done of the last access.
     input  wire         access,
     // With access: write a word; low = read a byte.
     input  wire         write,
-    // Word to write; moves up by a byte in each cycle with take_byte.
+    // Word to write; shifts up by a byte in each cycle with take_byte.
     input  wire  [31:0] write_data,
     // The host is reading: results must not change.
     input  wire         reading,
-    // A byte of the configuration word passes the head, most significant first: in a write that of write_data replaces it.
+    // A byte of the configuration word passes the head, most significant first; a write replaces it by that of write_data.
     output wire         take_byte,
     // Byte that was read, from done to the next access.
     output wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
     output wire         done,
-    // Frames are to be pushed.
+    // Push mode is on.
     output wire         push,
-    // A frame is being pushed: its first byte has been taken, its last one has not.
+    // A frame is being pushed: between its first and its last byte.
     output wire         in_frame,
     // push_byte is the next byte to push.
     output wire         push_valid,
     // The next byte.
     output wire   [7:0] push_byte,
-    // Strobe, with push_valid only: the byte is taken.
+    // Strobe, with push_valid only: the byte is accepted.
     input  wire         push_take,
     // EnDat clock to the transceiver; HIGH if the channel speaks T-format.
     output wire         endat_clk0_o,
@@ -75,7 +74,7 @@ module s6_two_channel_card_core (
     input  wire         endat_data0_i,
     // Data from the transceiver, asynchronous.
     input  wire         endat_data1_i,
-    // Blinks: slowly = well, quickly = the last result of a channel is an error.
+    // Blinks: slowly = good, quickly = the last result of a channel is an error.
     output reg          led_status_o,
     // The channel's last result is a good position.
     output wire         led_channel0_o,
@@ -100,9 +99,9 @@ module s6_two_channel_card_core (
     wire         set_replaced_1;
     // High for one cycle when a set is closed.
     wire         set_taken_0;
-    // Block of the set that is asked for.
+    // Requested block of the set.
     wire   [3:0] set_block_0;
-    // Byte of that block.
+    // Requested byte of that block.
     wire   [2:0] set_byte_at_0;
     // Read bytes of stream, interrupt and additional data.
     wire   [7:0] part_byte_0;

@@ -12,11 +12,11 @@
 //                |                             |
 //                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
 //
-// With requests the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
-// has a frame of its own. A separate block keeps the record of the additional data that follow each position.
+// With requests the channel sends all mode commands: a request is attached to the next triggered position frame (EnDat 2.2), or
+// has a separate frame. The block AddInfo records the additional data that follow each position.
 // The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and measures the
-// propagation delay; all others run at the configured clock. Settings stay as they are while busy and in the cycle of a trigger.
-// With guards a frame takes a copy of them, and a setting that changes under way makes its position invalid.
+// propagation delay; all others run at the configured clock. Settings are frozen while busy and in the cycle of a trigger. With
+// guards a frame keeps a copy of them, and a setting that changes during the frame makes its position invalid.
 module s6_two_channel_channel (
     // System clock.
     input  wire         clock,
@@ -26,13 +26,13 @@ module s6_two_channel_channel (
     input  wire         tick_us,
     // Free-running time in system clock cycles.
     input  wire  [31:0] timestamp,
-    // One-cycle strobe: take a position.
+    // One-cycle strobe: read a position.
     input  wire         trigger,
     // Strobe: measure the propagation delay again with the next frame.
     input  wire         calibrate,
-    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
+    // EnDat clock period, in system clock cycles; if odd, the high phase is longer. T-format: a bit, 8 to 127.
     input  wire  [10:0] period_cycles,
-    // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
+    // Extension of the first low phase beyond half a period: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
     // Mode command of a triggered frame.
     input  wire   [5:0] command,
@@ -58,7 +58,7 @@ module s6_two_channel_channel (
     output wire         result_strobe,
     // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     output wire  [47:0] position,
-    // There is a good position.
+    // A good position is available.
     output wire         position_valid,
     // The last result brought the position, or in T-format a part of it; low = held from an earlier frame.
     output wire         fresh,
@@ -76,7 +76,7 @@ module s6_two_channel_channel (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // CRC received with the position. With the error bits of a good frame and the width, a host can check what it has read. 0 in
     // T-format.
     output wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
@@ -85,19 +85,19 @@ module s6_two_channel_channel (
     output wire         position_has_f2,
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles,
-    // Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
+    // Tracked propagation delay tD, including synchroniser and filter, in system clock cycles.
     output wire  [10:0] delay_cycles,
-    // A trigger would not be taken.
+    // A trigger would be lost.
     output wire         busy,
-    // Its primary cause, as that of a result.
+    // Primary cause of the frame, as in a result.
     output wire   [4:0] over_cause,
-    // Its raw flags.
+    // Raw flags of the frame.
     output wire  [19:0] over_flags
 );
     // EnDat clock period of a frame that measures the delay, in system clock cycles.
     localparam  [10:0] CALIBRATION_PERIOD_CYCLES = 11'd500;
 
-    // Strobe: a trigger has been lost.
+    // Strobe: a trigger is lost.
     wire         displaced;
     // Mode command for triggered frames.
     wire   [5:0] command_set;
@@ -376,15 +376,16 @@ module s6_two_channel_channel (
 
     assign filter_set = filter_cycles;
     assign window_set = start_window_cycles;
-    // Which command the next frame has is settled before it begins, and stays until all has been told of it.
+    // The command of the next frame is fixed before it begins, and stays until the frame has been reported.
     assign command_now = command_set;
     assign payload_bits = width_set;
-    // Outside of a command nothing is left to send, whatever a register says.
+    // Outside of a command nothing is left to send, whatever the sender's registers hold.
     assign sender_aborts = transaction_aborts | (!receiver_skipping & !transaction_start_supplement);
     assign receiver_level = filter_level;
-    // In fewer than four cycles additional data, or the next answer of a running clock, would begin before the position is taken.
+    // With fewer than four cycles, additional data or the next answer of a running clock would begin before the position is stored.
     assign wanted_shape_command = command;
-    // A trigger takes positions only, with a request or without: another command's answer is none, and may change the encoder.
+    // A trigger sends position commands only, with or without a request. Another command brings no position and may change the
+    // encoder.
     assign transaction_is_known = wanted_shape_is_position;
 
     always @* begin
@@ -403,7 +404,7 @@ module s6_two_channel_channel (
             data_pin <= 1'b0;
             oe_pin <= 1'b0;
         end else begin
-            // The line, from registers.
+            // Registers the outputs of the line.
             clk_pin <= clock_gen_endat_clk;
             data_pin <= sender_data;
             oe_pin <= sender_oe;

@@ -4,14 +4,13 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Registers of one channel: the result as the host reads it, and the configuration.
+// Registers of one channel: the result for the host, and the configuration.
 //
-// channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
+// channel's result --(load)--> held words, their age counts on --> byte of each word, of the selected word only --> OR --> read_out
 // ring block of the channel --(ring at rest, channel not busy, no trigger)--> configuration of the channel
-// The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. Words that are
-// held for longer than a trigger show it: the age counts on while they are held, and stale reports a trigger that has come since. A
-// byte that is not selected is 0 in its register: the read path is an OR, and the selection costs no logic but the registers'
-// reset.
+// One signal loads the held words of all channels, so they belong together; register_bank controls it. Words that are held for
+// longer than a trigger show it: the age counts on, and stale reports a later trigger. A byte that is not selected is 0 in its
+// register. So the read path is an OR, and the selection needs only the registers' reset.
 module s6_two_channel_channel_registers (
     // System clock.
     input  wire         clock,
@@ -21,15 +20,15 @@ module s6_two_channel_channel_registers (
     input  wire         tick_us,
     // The channel's trigger.
     input  wire         trigger,
-    // Strobe: some channel takes a trigger; results of another trigger than this are not waited for.
+    // Strobe: a channel takes a trigger; the card no longer waits for results of an earlier trigger.
     input  wire         new_set,
-    // The channel does not take a trigger; its configuration must not change.
+    // A trigger would be lost; the configuration must not change.
     input  wire         busy,
     // Strobe: a new result can be read from this cycle on.
     input  wire         result_strobe,
     // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     input  wire  [47:0] position,
-    // There is a good position.
+    // A good position is available.
     input  wire         position_valid,
     // The last result brought the position, or in T-format a part of it; low = held from an earlier frame.
     input  wire         fresh,
@@ -47,7 +46,7 @@ module s6_two_channel_channel_registers (
     input  wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     input  wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // CRC received with the position. With the error bits of a good frame and the width, a host can check what it has read. 0 in
     // T-format.
     input  wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
@@ -60,15 +59,15 @@ module s6_two_channel_channel_registers (
     input  wire  [10:0] delay_cycles,
     // The channel takes the trigger.
     output wire         taken,
-    // The channel took the trigger of the last new_set, and its result is not there yet.
+    // The channel took the trigger of the last new_set, and its result is still missing.
     output wire         owes,
-    // Strobe: this result is the one that the channel owed.
+    // Strobe: this result is the missing one.
     output wire         brought,
     // The held words follow the result.
     input  wire         load,
-    // Nothing is being read: age and stale of the held words go on.
+    // No read is under way: age and stale of the held words are updated.
     input  wire         show,
-    // Words that are not read, one bit per word.
+    // Result words that are not read, one bit per word.
     input  wire   [5:0] word_skip,
     // Byte of the word, 0 = most significant.
     input  wire   [1:0] lane,
@@ -78,17 +77,17 @@ module s6_two_channel_channel_registers (
     input  wire   [7:0] read_in,
     // read_in, or this channel's byte; 2 cycles after word_skip.
     output wire   [7:0] read_out,
-    // The configuration ring moves on by one byte.
+    // The configuration ring advances by one byte.
     input  wire         ring_turn,
     // The configuration ring is at rest, its words are in place.
     input  wire         ring_home,
     // Byte from the following ring block, its parity in bit 8.
     input  wire   [8:0] ring_in,
-    // Byte to the ring block in front.
+    // Byte to the previous ring block.
     output wire   [8:0] ring_out,
-    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
+    // EnDat clock period, in system clock cycles; if odd, the high phase is longer. T-format: a bit, 8 to 127.
     output wire  [10:0] period_cycles,
-    // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
+    // Extension of the first low phase beyond half a period: 0, or at least 4 system clock cycles (tST).
     output wire  [10:0] first_low_extra_cycles,
     // Mode command of a triggered frame.
     output wire   [5:0] command,
@@ -111,17 +110,17 @@ module s6_two_channel_channel_registers (
     wire         age_tick;
     // Age with the tick or load of this cycle.
     reg   [15:0] age_now;
-    // Words of the result as the channel gives it now.
+    // Current words of the result of the channel.
     wire  [31:0] word_0;
-    // Words of the result as the channel gives it now.
+    // Current words of the result of the channel.
     wire  [31:0] word_1;
-    // Words of the result as the channel gives it now.
+    // Current words of the result of the channel.
     wire  [31:0] word_2;
-    // Words of the result as the channel gives it now.
+    // Current words of the result of the channel.
     wire  [31:0] word_3;
-    // Words of the result as the channel gives it now.
+    // Current words of the result of the channel.
     wire  [31:0] word_4;
-    // Words of the result as the channel gives it now.
+    // Current words of the result of the channel.
     wire  [31:0] word_5;
     // Held words, with age and stale.
     wire  [31:0] shown_0;
@@ -207,7 +206,7 @@ module s6_two_channel_channel_registers (
     assign taken = trigger & !busy;
     assign owes = waiting & !result_strobe;
     assign brought = waiting & result_strobe;
-    // A trigger that comes with a result is newer than it.
+    // A trigger in the cycle of a result is newer than the result.
     assign newer_trigger_now = trigger | (newer_trigger & !result_strobe);
     assign age_tick = tick_us & !age_full;
 
@@ -215,7 +214,7 @@ module s6_two_channel_channel_registers (
         stale_now = stale | trigger;
         age_full_next = (&age[15:1]) & (age[0] | age_tick);
         age_now = age + {15'd0, age_tick};
-        // After the adder: load is known late.
+        // After the adder, because load arrives late in the cycle.
         if (load) begin
             stale_now = newer_trigger_now;
             age_now = age_us;
@@ -225,7 +224,7 @@ module s6_two_channel_channel_registers (
 
     assign word_0 = {flags[19:12], fresh, position_valid, 1'b0, cause, sequence_value};
     assign word_1 = position[31:0];
-    // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
+    // A good position has F1 = 0 and, in EnDat 2.2, F2 = 1: one bit for the presence of F2 is enough.
     assign word_2 = {2'd0, position_width, 1'b0, position_has_f2, 1'b0, position_crc, position[47:32]};
     assign word_3 = first_fall_timestamp;
     assign word_4 = {flags[11:0], delay_cycles[9:0], crc_computed, crc_received};
@@ -244,7 +243,7 @@ module s6_two_channel_channel_registers (
     assign filter_cycles = config1[27:24];
     assign start_timeout_us = config2[11:0];
     assign recovery_limit_cycles = config2[28:16];
-    // A channel with corrupted settings sends no command: these codes are none.
+    // A channel with corrupted settings sends no command: these codes are invalid.
     assign command = config0[29:24];
     assign byte_0_reset = word_skip[0];
     assign byte_1_reset = word_skip[1];
@@ -272,7 +271,7 @@ module s6_two_channel_channel_registers (
             config1 <= 32'h20800b8;
             config2 <= 32'hc501012;
         end else begin
-            // A trigger that the channel does not take gives no result of its own.
+            // A trigger that is lost has no separate result.
             if (result_strobe) begin
                 waiting <= 1'b0;
             end

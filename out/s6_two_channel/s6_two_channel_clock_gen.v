@@ -12,8 +12,8 @@
 // fall        /\___________________/\________/\___
 // rise        _________________/\________/\_______
 //
-// The line idles HIGH and a frame ends with it HIGH, an aborted one as well. A low phase that was held is followed
-// by a whole half period, and a low phase that has begun is finished: no pulse is ever shortened.
+// The line idles HIGH, and every frame ends HIGH, an aborted one as well. A whole half period follows a low phase that was held,
+// and a low phase that has begun is finished: no pulse is ever shortened.
 module s6_two_channel_clock_gen (
     // System clock.
     input  wire         clock,
@@ -25,7 +25,7 @@ module s6_two_channel_clock_gen (
     input  wire         hold_low,
     // Keeps a high phase high: no frame, or its last rising edge has been sent.
     input  wire         stop,
-    // Period, in system clock cycles; the high phase is the longer one if it is odd.
+    // Period, in system clock cycles; if odd, the high phase is longer.
     input  wire  [10:0] period_cycles,
     // The EnDat clock, one cycle before it reaches the pin.
     output wire         endat_clk,
@@ -38,7 +38,7 @@ module s6_two_channel_clock_gen (
 );
     // High in the last cycle before a rising edge.
     wire         rise_now;
-    // High in the last cycle before a falling edge, but for the first one.
+    // High in the last cycle before a falling edge, except the first one.
     wire         fall_now;
     // High while a low phase is held.
     wire         held;
@@ -108,7 +108,7 @@ module s6_two_channel_clock_gen (
     reg [9:0] f_shortest; initial f_shortest = 10'd0;
     wire [9:0] f_half = period_cycles[10:1];
     wire [9:0] f_shortest_now = (f_half < f_shortest) ? f_half : f_shortest;
-    // what the timer has counted so far, by what it says is left
+    // cycles counted by the timer so far, from the cycles left
     wire [9:0] f_count = f_half + {9'd0, level & period_cycles[0]} + 10'd2 - half_left_cycles;
     reg f_past_valid; initial f_past_valid = 1'b0;
     reg f_reset; reg f_start;

@@ -4,21 +4,21 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Command shape: what belongs to a mode command, from its two triplets alone.
+// Command shape: the parts of a frame, derived from the two triplets of its mode command.
 //
 // left   right        frame
 // 000    111          position with F1
 // 111    000          position with F1, F2, additional data
 // 010    101          F1 and 40 bits of test values
-// 010    010          24 bits there, 24 bits back
-// other  complement   24 bits there, 24 bits back
+// 010    010          24 bits sent, 24 bits received
+// other  complement   24 bits sent, 24 bits received
 // other  the same     position with F1, F2, additional data; supplement
 //
 // Ref: HEIDENHAIN Technical Information 383942 (mode commands).
 module s6_two_channel_command_shape (
     // Mode command.
     input  wire   [5:0] command,
-    // It is 000111 or 111000.
+    // The command is 000111 or 111000.
     output wire         is_position,
     // F2 follows F1; the selected additional data follow the position.
     output wire         has_f2

@@ -4,24 +4,23 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// One block of configuration words on the ring: three words, a byte leaves at the front as another enters at the end.
+// One block of configuration words on the ring: three words; each step moves a byte out at the front and another in at the end.
 //
 //             +--------------------------- byte ring, one step in each cycle with turn ---------------------------+
 //             v                                                                                                     |
 // head <- [card block: word 0 .. 2] <- [channel 0: word 0 .. 2] <- ... <- [last channel] <- head, or a written byte +
-//
-// A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
-// in place only while the ring is at rest, so the blocks work from copies that are taken then.
+// A turn moves every byte past the one head that reads and writes, so there is no read multiplexer and no write decoder. The words
+// are in place only while the ring is at rest, so the blocks use copies that are taken then.
 module s6_two_channel_config_ring_2 (
     // System clock.
     input  wire         clock,
     // Synchronous reset: the words return to their start values.
     input  wire         reset,
-    // The ring moves on by one byte.
+    // The ring advances by one byte.
     input  wire         turn,
     // Byte from the following block, its parity in bit 8.
     input  wire   [8:0] byte_in,
-    // Byte that goes to the block in front: the most significant one of word 0.
+    // Byte to the previous block: the most significant one of word 0.
     output wire   [8:0] byte_out,
     // Word 0, while the ring is at rest.
     output wire  [31:0] word0,

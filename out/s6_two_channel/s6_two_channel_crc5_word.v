@@ -4,15 +4,15 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Parallel CRC5 of a word whose last bit has just come in at place 4, 19, 34 or 49, with zeros below its first bit.
-// What a bit contributes depends on its distance from the last one, modulo 15; that one stands at place 4, modulo 15. So the word
-// folded to 15 bits gives five parities that are the same for every width, and preset and inversion add one of 15 constants.
+// Parallel CRC5 of a word whose last bit has just entered at place 4, 19, 34 or 49, with zeros below its first bit.
+// The contribution of a bit depends on its distance from the last one, modulo 15; the last bit is at place 4, modulo 15. So the
+// word folded to 15 bits gives five parities, equal for every width, and preset and inversion add one of 15 constants.
 module s6_two_channel_crc5_word (
     // The word, its last bit at one of the four places.
     input  wire  [49:0] word,
     // Number of its bits modulo 15, 0..=14.
     input  wire   [3:0] covered,
-    // The CRC as it would be sent; bit 4 goes first.
+    // The CRC as transmitted; bit 4 goes first.
     output wire   [4:0] crc
 );
     localparam  [14:0] MASK_0 = 15'h6e14;
@@ -43,7 +43,7 @@ module s6_two_channel_crc5_word (
 
     // The word folded to 15 bits.
     wire  [14:0] folded;
-    // The CRC as its parts are added.
+    // Partial sum of the CRC.
     reg    [4:0] sum;
 
     assign folded = word[14:0] ^ word[29:15] ^ word[44:30] ^ {10'd0, word[49:45]};

@@ -4,15 +4,15 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Encoder port: a channel, and its service where the configuration has one; or the port of another protocol in their place.
+// Encoder port: a channel, with its service if configured; or the port of another protocol.
 //
 // trigger, configuration --> ServiceChannel --> Channel --> EnDat     trigger, configuration --> TFormatPort --> T-format
 //                               ^   |             |                                                 ^  |
 // host --- Service, RAM <-- io -+---+             +--> results        host --- words ---------------+  +--> results
 //
-// What only another protocol has reads 0; EnDat's clock rests HIGH.
+// Outputs of other protocols read 0; the EnDat clock then rests HIGH.
 //
-// For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
+// A design with a separate bus uses this block: everything for one encoder, without a host link.
 module s6_two_channel_encoder_port (
     // System clock.
     input  wire         clock,
@@ -22,13 +22,13 @@ module s6_two_channel_encoder_port (
     input  wire         tick_us,
     // Free-running time in system clock cycles.
     input  wire  [31:0] timestamp,
-    // One-cycle strobe: take a position.
+    // One-cycle strobe: read a position.
     input  wire         trigger,
     // Strobe: measure the propagation delay again with the next frame.
     input  wire         calibrate,
-    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
+    // EnDat clock period, in system clock cycles; if odd, the high phase is longer. T-format: a bit, 8 to 127.
     input  wire  [10:0] period_cycles,
-    // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
+    // Extension of the first low phase beyond half a period: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
     // Mode command of a triggered frame.
     input  wire   [5:0] command,
@@ -54,7 +54,7 @@ module s6_two_channel_encoder_port (
     output wire         result_strobe,
     // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     output wire  [47:0] position,
-    // There is a good position.
+    // A good position is available.
     output wire         position_valid,
     // The last result brought the position, or in T-format a part of it; low = held from an earlier frame.
     output wire         fresh,
@@ -72,7 +72,7 @@ module s6_two_channel_encoder_port (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // CRC received with the position. With the error bits of a good frame and the width, a host can check what it has read. 0 in
     // T-format.
     output wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
@@ -81,14 +81,14 @@ module s6_two_channel_encoder_port (
     output wire         position_has_f2,
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles,
-    // Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
+    // Tracked propagation delay tD, including synchroniser and filter, in system clock cycles.
     output wire  [10:0] delay_cycles,
-    // A trigger would not be taken.
+    // A trigger would be lost.
     output wire         busy
 );
-    // Its primary cause, as that of a result.
+    // Primary cause of the frame, as in a result.
     wire   [4:0] over_cause;
-    // Its raw flags.
+    // Raw flags of the frame.
     wire  [19:0] over_flags;
     wire         _unused_ok = &{1'b0, over_cause, over_flags};
 

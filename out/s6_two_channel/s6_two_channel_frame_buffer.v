@@ -4,17 +4,16 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Frame buffer: takes a set byte by byte, adds the CRC, encodes it with COBS on the way into a block RAM, and gives
-// whole frames out again.
+// Frame buffer: takes a set byte by byte, adds the CRC, encodes it with COBS into a block RAM, and outputs
+// whole frames.
 //
 //                     +--------> CRC-16 -----+
 // block, byte_at --> set byte ---------------+--> byte --> COBS --> block RAM --> data, ready
 //                                                  start of frame ^  written ^        ^ read
 // RAM   .... frame frame | n  b  b  b  n  b ...                                  take-+
-//            ^ read_at     ^ start_at    ^ code_at: kept for the distance to the next zero
-// The place of the next code byte is kept free and written when the zero is met. A reader sees the frame only when its end is
-// written: start_at is taken forward over all of it at once. A byte takes 16 cycles: one for each bit of the CRC, and time for the
-// rest.
+// ^ read_at     ^ start_at    ^ code_at: reserved for the distance to the next zero
+// The place of the next code byte is reserved, and written at the next zero. The reader sees a frame only when its end has been
+// written: start_at then moves past the whole frame. A byte takes 16 cycles, eight of them for the bits of the CRC.
 //
 // Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
 module s6_two_channel_frame_buffer (
@@ -28,22 +27,22 @@ module s6_two_channel_frame_buffer (
     output wire         idle,
     // A whole frame fits.
     output wire         room,
-    // Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
+    // Requested 8 bytes of the set: 0 = head, n + 1 = channel n.
     output wire   [3:0] block,
-    // Which of them.
+    // Requested byte of these.
     output wire   [2:0] byte_at,
-    // That byte, at most 4 cycles later; 0 if there is no such block.
+    // Requested byte, at most 4 cycles later; 0 for an absent block.
     input  wire   [7:0] set_byte,
-    // Bytes that wait; a frame counts when it is whole.
+    // Bytes in the buffer, counting complete frames only.
     output wire  [15:0] waiting_bytes,
     // data is the next byte.
     output wire         ready,
     // The next byte of the frames.
     output wire   [7:0] data,
-    // Strobe, with ready only: the byte is taken.
+    // Strobe, with ready only: the byte is accepted.
     input  wire         take
 );
-    // Number of the block following the last channel's.
+    // Number of the block after the last channel's.
     localparam   [3:0] TAIL_BLOCK = 4'd3;
     // Highest address of the buffer.
     localparam  [12:0] MASK = 13'h7ff;
@@ -56,7 +55,7 @@ module s6_two_channel_frame_buffer (
     wire   [2:0] bit_index;
     // Bit that the CRC feeds back.
     wire         feedback;
-    // High for one cycle when the write address moves on.
+    // High for one cycle when the write address advances.
     wire         advance;
     // High for one cycle when the buffer is written.
     wire         write;
@@ -71,12 +70,12 @@ module s6_two_channel_frame_buffer (
     wire  [10:0] ram2k_0_write_address;
     // High while a frame is written.
     reg          writing; initial writing = 1'b0;
-    // Which of the 16 cycles of the byte this is.
+    // Cycle of the byte, 0 to 15.
     reg    [3:0] cycle_at; initial cycle_at = 4'd0;
     // Byte of the set that is written: block in bits 6 to 3, byte in bits 2 to 0.
     reg    [6:0] at; initial at = 7'd0;
     wire         at_reset;
-    // High while the bytes following the last block are written: CRC and end.
+    // High while the bytes after the last block are written: CRC and end.
     reg          in_tail; initial in_tail = 1'b0;
     // High while the end of the frame is written.
     reg          is_end; initial is_end = 1'b0;
@@ -98,28 +97,28 @@ module s6_two_channel_frame_buffer (
     reg   [12:0] write_at; initial write_at = 13'd0;
     // Address that is kept free for the next code byte.
     reg   [12:0] code_at; initial code_at = 13'd0;
-    // Address following the last whole frame: the reader stops there.
+    // Address after the last whole frame: the reader stops there.
     reg   [12:0] start_at; initial start_at = 13'd0;
     // Address of the next byte to read.
     reg   [12:0] read_at; initial read_at = 13'd0;
-    // Bytes that wait to be read.
+    // Bytes waiting to be read.
     reg   [12:0] used; initial used = 13'd0;
     // High if a whole frame fits.
     reg          fits; initial fits = 1'b1;
-    // High in the cycle after a byte was taken: used is not up to date.
+    // High in the cycle after a byte was accepted: used is not up to date.
     reg          took; initial took = 1'b0;
     wire         _unused_ok = &{1'b0, write_address[12:11]};
 
-    // Each frame begins anew.
+    // Each frame starts from the initial state.
     assign at_reset = !writing;
     assign crc_reset = !writing;
     assign run_reset = !writing | (byte_end & is_zero);
     assign block = at[6:3];
     assign byte_at = at[2:0];
-    // A bit of the CRC in each of the second eight cycles.
+    // Each of the second eight cycles processes a bit of the CRC.
     assign bit_index = ~cycle_at[2:0];
     assign feedback = crc[15] ^ byte_held[bit_index];
-    // COBS: a zero becomes the place of the next code byte, and its distance goes to the last one.
+    // COBS: a zero reserves the place of the next code byte, and its distance is written to the last one.
     assign advance = start | (byte_end & !is_end & !is_past);
     assign write = byte_end & !is_past;
 
@@ -168,7 +167,7 @@ module s6_two_channel_frame_buffer (
             if (byte_end & is_past) begin
                 writing <= 1'b0;
             end
-            // Which byte, and which of its 16 cycles.
+            // Byte, and its cycle 0 to 15.
             cycle_at <= cycle_at + 4'd1;
             if (!writing) begin
                 cycle_at <= 4'd0;
@@ -200,8 +199,7 @@ module s6_two_channel_frame_buffer (
             end
             used <= (start_at - read_at) & MASK;
             fits <= used <= MOST_USED;
-            // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after
-            // that.
+            // The read side. An accepted byte frees its place a cycle later, and the next byte comes in the cycle after that.
             took <= take;
         end
     end
@@ -284,7 +282,7 @@ module s6_two_channel_frame_buffer (
         if (byte_end & !in_tail) f_crc <= f_crc_of(f_crc, byte_held, 4'd8);
         if (!writing) f_crc <= 16'hffff;
     end
-    // as the port says: what the set gives is there in time, and stays
+    // according to the port: the byte from the set is ready in time, and stays
     always @* begin
         assume ((f_cycle < 4'd5) | (f_cycle == 4'd15) | (set_byte == f_byte));
     end
@@ -310,7 +308,7 @@ module s6_two_channel_frame_buffer (
     wire [12:0] f_waits = (start_at - read_at) & MASK;
     wire [12:0] f_frame = (write_at - start_at) & MASK;
     wire f_closed = !writing | ((at[6:3] == TAIL_BLOCK) & at[2]);
-    // as the port says: who takes a byte has seen that one is there
+    // according to the port: a byte is taken only after it is ready
     always @* assume (!take | ready);
     wire f_settles = writing & f_closed & (cycle_at == 4'd0);
     always @* begin

@@ -10,18 +10,18 @@
 // second    ____________/~~~~~~~~~~~~~\______    (first half, second half)
 // tick      ___________/\____________/\______
 //
-// A period of an odd number of cycles has its second half one cycle longer. The comparison is registered, which
-// is why the counter starts at 2.
+// A period with an odd number of cycles has a second half that is one cycle longer. The comparison is registered, so
+// the counter starts at 2.
 module s6_two_channel_half_period (
     // System clock.
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // Begins a half with the next cycle; held, it keeps the timer at the beginning.
+    // Begins a half with the next cycle; while high, it keeps the timer at the beginning.
     input  wire         restart,
-    // With restart: the half has begun with this cycle already.
+    // With restart: the half began with this cycle.
     input  wire         began,
-    // Whether this is the second half of the period.
+    // High in the second half of the period.
     input  wire         second,
     // Period, in system clock cycles.
     input  wire  [10:0] period_cycles,
@@ -72,10 +72,10 @@ module s6_two_channel_half_period (
             end
             if (restart & began) begin
                 count <= 10'd3;
-                // A half of two cycles is over at once.
+                // A half of two cycles ends at once.
                 hit <= 1'b0;
             end
-            // Registered, for the clock period may be chosen late.
+            // Registered, because the clock period may be selected late in the cycle.
             is_odd <= period_cycles[0];
         end
     end

@@ -4,12 +4,12 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Input filter: brings the asynchronous data line into the system clock domain and removes short pulses.
+// Input filter: synchronises the asynchronous data line and removes short pulses.
 //
 // pin --[SyncReg x3]--> majority of 3 --> stable for filter_cycles + 1 samples? --[Reg]--> level, edge_strobe
 //   \--[FallReg, SyncReg x3]--^   (two samples in each cycle: level_first is half a cycle older than level)
 //
-// The delay it adds is part of the propagation delay that the receiver measures, so it needs no correction.
+// Its delay is part of the measured propagation delay, so it needs no correction.
 module s6_two_channel_input_filter (
     // System clock.
     input  wire         clock,
@@ -26,7 +26,7 @@ module s6_two_channel_input_filter (
 );
     // Samples in a row that the filter ignores.
     reg    [4:0] limit;
-    // Sample of the cycle, after the majority; with two samples a cycle the second one.
+    // Sample of the cycle, after the majority; with two samples in each cycle the second one.
     wire         sample;
     // Filtered level between the two samples of the cycle.
     reg          middle;

@@ -14,7 +14,7 @@ s6_two_channel u_s6_two_channel (
     .endat_data1_oe(), // out       Driver enable of the EnDat data line.
     .endat_data0_i(), // in       EnDat data from the transceiver, asynchronous.
     .endat_data1_i(), // in       EnDat data from the transceiver, asynchronous.
-    .led_status_o(), // out       Blinks: slowly = well, quickly = the last result of a channel is an error.
+    .led_status_o(), // out       Blinks: slowly = good, quickly = the last result of a channel is an error.
     .led_channel0_o(), // out       The channel's last result is a good position.
     .led_channel1_o()  // out       The channel's last result is a good position.
 );

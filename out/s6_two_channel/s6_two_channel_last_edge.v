@@ -4,15 +4,15 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Last edge: when the last rising edge of CLOCK has come back, from which the recovery time counts.
+// Last edge: detects when the last rising edge of CLOCK has come back; the recovery time counts from it.
 //
-// center     /\__/\__/\__/\______    between two samples; the edge is in the middle behind the last bit
+// center     /\__/\__/\__/\______    between two samples; the edge is in the middle after the last bit
 // last_bit   ___/\_______________    the last bit is sampled
-// in_tail    _________/~~~\______    double edge: the answer has been worked upon, some cells later
-// comes      ____________/\______    here the timer begins
-// ago_cycles             2           with what has passed
-// Never are more pulses on the cable than the answer needs: where all are sent before it has begun, CLOCK is held LOW, and the edge
-// comes a cell later.
+// in_tail    _________/~~~\______    double edge: the answer has been processed, some cells later
+// comes      ____________/\______    the timer begins here
+// ago_cycles             2           with the cycles that have passed
+// The cable never carries more pulses than the answer needs. If all are sent before the answer begins, CLOCK is held LOW, and the
+// edge comes a cell later.
 module s6_two_channel_last_edge (
     // System clock.
     input  wire         clock,
@@ -22,29 +22,29 @@ module s6_two_channel_last_edge (
     input  wire         start,
     // All pulses of the answer are sent, or on their way to the pin.
     input  wire         no_pulse_left,
-    // Strobe: the last one is counted in this cycle.
+    // Strobe: the last pulse is counted in this cycle.
     input  wire         last_sent,
-    // None that was sent is still to come back.
+    // All sent pulses have come back.
     input  wire         none_under_way,
-    // The start bit has come.
+    // The start bit has been received.
     input  wire         started,
-    // Pulses are sent.
+    // Pulses are being sent.
     input  wire         running,
     // Strobe: a cycle ago was the middle between two samples.
     input  wire         was_center,
-    // The answer has been worked upon, the cell behind it goes on.
+    // The answer has been processed; the cell after it continues.
     input  wire         in_tail,
-    // That cell is over.
+    // The cell after the answer is over.
     input  wire         in_recovery,
-    // The HIGH behind the answer has been sampled.
+    // The HIGH after the answer has been sampled.
     input  wire         tail_sampled,
-    // Strobe: the edge has come back, ago_cycles ago; again where it came later than expected.
+    // Strobe: the edge has come back, ago_cycles ago; repeated if it came later than expected.
     output wire         comes,
     // All pulses are sent.
     output wire         all_sent,
-    // CLOCK is to be held LOW.
+    // CLOCK must be held LOW.
     output wire         holds,
-    // It waits for what is under way.
+    // CLOCK waits for the pulses on the cable.
     output wire         stalled
 );
     // High if all pulses are sent and the start bit has not come yet.

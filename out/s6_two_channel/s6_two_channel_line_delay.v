@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Line delay: knows how long an answer takes to come back, and says when to sample.
+// Line delay: measures how long an answer takes to come back, and times the samples.
 //
 // rise        /\_________/\_________/\______      clock edges leaving the receiver
 //             |<-- tD -->|
@@ -15,7 +15,7 @@
 // (acquire), and followed by one cycle per frame afterwards. Sampling from this tracked phase tolerates twice
 // the jitter that sampling from the start edge of the same frame would.
 //
-// A rising edge of the clock and the cell that it launched are a delay apart: pulse and sample say when each counts.
+// A rising edge of the clock and the cell that it launched are one delay apart: pulse and sample mark when each counts.
 //
 // Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, endat_main.asm.
 module s6_two_channel_line_delay (
@@ -23,14 +23,13 @@ module s6_two_channel_line_delay (
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // A frame is under way on the wire; low between frames, where everything but the delay is forgotten.
+    // A frame is under way on the wire; between frames all timing state except the delay is cleared.
     input  wire         run,
-    // The clock waits: when the cells of all pulses that were sent have ended, a new burst begins.
+    // The clock stops: when the cells of all sent pulses have ended, a new burst begins.
     input  wire         drain,
-    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another
-    // clock.
+    // One-cycle strobe: the last cell has begun. The next sample comes half a period later, possibly of another clock.
     input  wire         last_cell,
-    // No clock pulse has been sent whose cell has not ended.
+    // The cells of all clock pulses that were sent have ended.
     input  wire         none_under_way,
     // This frame measures the delay instead of using it.
     input  wire         acquire,
@@ -48,7 +47,7 @@ module s6_two_channel_line_delay (
     input  wire  [10:0] period_cycles,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
-    // Strobe: a clock pulse is sent that the answer needs; not one before the start edge of a frame that measures.
+    // Strobe: a clock pulse of the answer is sent; in a frame that measures, only from the start edge on.
     output wire         pulse,
     // Strobe: the data line is sampled.
     output wire         sample,
@@ -73,7 +72,7 @@ module s6_two_channel_line_delay (
     reg   [10:0] step;
     // High if the data edge of the cell has come.
     wire         edge_now;
-    // High if no frame runs, or if the clock waits and the cells of all its pulses have ended.
+    // High if no frame runs, or if the clock is stopped and the cells of all its pulses have ended.
     wire         over;
     // Tracked delay in places: system clock cycles, or half ones with the double edge.
     wire  [11:0] places;
@@ -120,7 +119,7 @@ module s6_two_channel_line_delay (
     reg    [5:0] edge_error; initial edge_error = 6'd0;
     // Set when that distance exceeds the start window; cleared with the sample.
     reg          edge_outside; initial edge_outside = 1'b0;
-    // High for one cycle after a clock pulse has been sent whose cell counts.
+    // High for one cycle after a clock pulse was sent whose cell counts.
     reg          pulse_leaves; initial pulse_leaves = 1'b0;
     wire         _unused_ok = &{1'b0, places[11], half_left_cycles};
 
@@ -142,7 +141,7 @@ module s6_two_channel_line_delay (
     assign due = delay_over;
     assign acquired = acquire & hunting & data_edge & !cells_run;
     assign first_center = acquired | (due & !cells_run & !acquire);
-    // With two system clock cycles in a bit one cell more begins before a burst is over.
+    // With two system clock cycles in a bit, one more cell begins before a burst ends.
     assign sample_now = sample_strobe;
     assign center_now = acquired | center_strobe;
     assign half_second = second_half;
@@ -167,7 +166,7 @@ module s6_two_channel_line_delay (
 
     // All cells of a burst have ended: the next rising edge begins a new one.
     assign over = !run | (drain & none_under_way);
-    // Places of the cells, and what was measured.
+    // Outputs the places of the cells, and the measurement.
     assign sample = sample_now;
     assign center = center_now;
     assign edge_in_window = edge_now & !edge_outside;
@@ -202,8 +201,7 @@ module s6_two_channel_line_delay (
             since_rise <= since_rise + 11'd1;
             if (first_rise) begin
                 timing_armed <= 1'b1;
-                // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles
-                // earlier.
+                // The comparison with the tracked delay and its result are registered: counting starts two cycles earlier.
                 since_rise <= 11'd3;
                 if (acquire) begin
                     since_rise <= 11'd1;
@@ -228,8 +226,8 @@ module s6_two_channel_line_delay (
                 sample_strobe <= 1'b0;
                 center_strobe <= 1'b0;
             end
-            // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
-            // is as good as one that is seen with it: the limits of the bit are as far from both.
+            // Distance between the data edge and the middle of its place. An edge first seen one cycle after the middle is as good
+            // as one seen with the middle: both are equally far from the limits of the bit.
             if (center_now) begin
                 center_seen <= 1'b1;
             end
@@ -251,10 +249,10 @@ module s6_two_channel_line_delay (
             end
             not_yet <= over | (acquire & !hunting);
             afresh <= over;
-            // The tracked delay goes where the start edge was.
+            // The tracked delay follows the start edge.
             follow_now <= follow & (|edge_error);
             // The pulse of a cell, and how far its data edge is from the middle.
-            // Of the edges before an acquired start bit that which launched it is the only one that counts.
+            // Only the edge that launched an acquired start bit counts, not those before it.
             pulse_leaves <= acquired | (will_rise & (!acquire | cells_run));
         end
     end

@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Primary cause: one out of all the flags of a frame.
+// Primary cause: selects one of the flags of a frame.
 module s6_two_channel_primary_cause (
     // Raw flags, one bit for each fault; bits as in the register map.
     input  wire  [19:0] flags,
@@ -21,7 +21,7 @@ module s6_two_channel_primary_cause (
         if (flags[18]) begin
             cause = 5'd17;
         end
-        // CRC before F1 before F2: error bits of a spoilt frame mean nothing.
+        // CRC before F1 before F2: error bits of a corrupted frame are invalid.
         if (flags[5]) begin
             cause = 5'd6;
         end

@@ -4,17 +4,17 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Receiver: takes the bits of an answer from the start bit to the last CRC bit.
+// Receiver: receives the bits of an answer from the start bit to the last CRC bit.
 //
 // field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
 // sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
 // align     __________________________________________/~~~~\____________________
-// The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
-// with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC5 is taken of the word
+// The position arrives LSB first. It is shifted in at one of four places. While the CRC bits arrive it is shifted down to bit 0 in
+// at most 16 system clock cycles. So no barrel shifter is needed, and F1 and F2 drop off the end. The parallel CRC5 covers the word
 // before that: at all four places its last bit has the same distance from a multiple of 15. left counts cells down to the end of
-// the frame, to_send the clock pulses that they need: the difference is under way. The clock generator stops when none is to be
-// sent: so the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit may
-// still be on the cable.
+// the frame, to_send the clock pulses that they need: the difference is under way. The clock generator stops when no pulse is left
+// to send. So the encoder receives exactly the rising edges it needs, and never more than the shortest answer while its start bit
+// may still be on the cable.
 module s6_two_channel_receiver (
     // System clock.
     input  wire         clock,
@@ -22,7 +22,7 @@ module s6_two_channel_receiver (
     input  wire         reset,
     // One-cycle strobe: a frame begins; the first falling clock edge comes at the end of this cycle.
     input  wire         start,
-    // The frame is given up: driver off at once, nothing is expected any more.
+    // The frame is aborted: driver off at once, the receiver expects nothing more.
     input  wire         aborts,
     // The frame measures the propagation delay: cells before the start bit are counted by clock edges.
     input  wire         acquire,
@@ -30,7 +30,7 @@ module s6_two_channel_receiver (
     input  wire         start_supplement,
     // Strobe of each rising clock edge.
     input  wire         rise,
-    // Strobe: a clock pulse is sent that the answer needs; not one before the start edge of a frame that measures.
+    // Strobe: a clock pulse of the answer is sent; in a frame that measures, only from the start edge on.
     input  wire         pulse,
     // Strobe: the data line is sampled.
     input  wire         sample,
@@ -42,31 +42,31 @@ module s6_two_channel_receiver (
     input  wire   [5:0] payload_bits,
     // F2 follows F1; the selected additional data follow the position.
     input  wire         has_f2,
-    // Strobe, between two frames: the word and the CRC take these.
+    // Strobe, between two frames: load the word and the CRC.
     input  wire         put,
-    // For the word.
+    // Word to load.
     input  wire  [47:0] put_word,
-    // For the CRC.
+    // CRC to load.
     input  wire   [4:0] put_crc,
-    // The line is undefined: samples are not looked at.
+    // The line is undefined: samples are ignored.
     output wire         skipping,
     // The start bit may come now.
     output wire         hunting,
     // Strobe with sample: this sample is a good start bit.
     output wire         start_found,
-    // Strobe one cycle after sample: it was high, but its edge is outside the window.
+    // Strobe one cycle after sample: the sample was high, but its edge is outside the window.
     output wire         start_refused,
-    // The start bit has been taken.
+    // The start bit has been received.
     output wire         started,
     // All clock pulses have been sent, or are on their way to the pin.
     output wire         all_sent,
-    // Strobe: the last one is counted in this cycle.
+    // Strobe: the last pulse is counted in this cycle.
     output wire         last_sent,
-    // The cell of each pulse that was sent has ended.
+    // The cell of each sent pulse has ended.
     output wire         none_under_way,
     // The counts of cells and pulses agree that this cell is the last one.
     output wire         all_used,
-    // They agree that there is none left.
+    // The counts of cells and pulses agree that no cell is left.
     output wire         all_ended,
     // Strobe: payload, error bits, CRC and verdict of the answer without additional data are valid.
     output reg          done,
@@ -76,33 +76,33 @@ module s6_two_channel_receiver (
     output wire         f1,
     // Error bit 2, low = alarm; high in frames without it.
     output wire         f2,
-    // The CRC of the bits as they came is the one received.
+    // The CRC of the bits as received equals the received CRC.
     output wire         crc_ok,
-    // The word as it is stored now fits the received CRC; without guards as crc_ok.
+    // The stored word matches the received CRC; without guards equal to crc_ok.
     output wire         stored_ok,
     // Payload, bit 0 = the bit received first, zeros above its width.
     output wire  [47:0] payload,
     // CRC as received; bit 4 came first.
     output wire   [4:0] crc_received,
-    // CRC computed from the bits as they came.
+    // CRC computed from the bits as received.
     output wire   [4:0] crc_computed
 );
     // Start value of covered; it is 0 after the skipped cells.
     localparam   [3:0] SKIP_FROM = 4'd5;
     // Cells of a frame without F2, payload and additional data.
     localparam   [6:0] FIXED_CELLS = 7'd17;
-    // What the next sample is.
+    // Field to which the next sample belongs.
     localparam   [3:0] FIELD_SKIP = 4'd0; // Cells before the earliest start bit: the line is undefined.
     localparam   [3:0] FIELD_START = 4'd1; // Low, until the start bit.
     localparam   [3:0] FIELD_F1 = 4'd2; // Error bit 1.
     localparam   [3:0] FIELD_F2 = 4'd3; // Error bit 2 (EnDat 2.2 frames).
-    localparam   [3:0] FIELD_PAYLOAD = 4'd4; // Position, LSB first, or what an answer has in its place.
+    localparam   [3:0] FIELD_PAYLOAD = 4'd4; // Position, LSB first, or other content in its place.
     localparam   [3:0] FIELD_CRC = 4'd5; // CRC, MSB first.
     localparam   [3:0] FIELD_SEPARATOR = 4'd6; // LOW before a block of additional data.
-    localparam   [3:0] FIELD_GAP_HIGH = 4'd7; // The clock goes on: HIGH after the last CRC bit.
+    localparam   [3:0] FIELD_GAP_HIGH = 4'd7; // The clock continues: HIGH after the last CRC bit.
     localparam   [3:0] FIELD_GAP_LOW = 4'd8; // LOW before the next start bit may come.
     localparam   [3:0] FIELD_DONE = 4'd9; // The answer is complete.
-    localparam   [3:0] FIELD_SUPPLEMENT = 4'd10; // Cells of the supplement: the line is ours or undefined.
+    localparam   [3:0] FIELD_SUPPLEMENT = 4'd10; // Cells of the supplement: the card drives the line, or it is undefined.
 
     // High if the last bit has been sampled.
     wire         is_taken;
@@ -110,7 +110,7 @@ module s6_two_channel_receiver (
     reg          skip_step;
     // High with the sample of a bit that the CRC covers.
     reg          covered_bit;
-    // High if the received CRC is that of the bits as they came.
+    // High if the received CRC equals that of the bits as received.
     wire         crc_fits;
     // High if the word is shifted by one bit.
     wire         shift;
@@ -142,23 +142,23 @@ module s6_two_channel_receiver (
     wire         counts;
     // Bits of the payload, or of the block under way.
     wire   [5:0] width;
-    // Cells of the frame besides its payload.
+    // Cells of the frame, excluding its payload.
     reg    [6:0] cells_around;
     wire   [4:0] crc_crc;
     // Part of the answer to which the next sample belongs.
     reg    [3:0] field; initial field = FIELD_DONE;
     reg    [3:0] field_next;
-    // Cells until the end of the frame; those that wait for the start bit are not counted.
+    // Cells until the end of the frame; cells that wait for the start bit do not count.
     reg    [6:0] left; initial left = 7'd0;
     reg    [6:0] left_next;
-    // The cell that comes is the last one of the payload.
+    // The current cell is the last one of the payload.
     reg          payload_ends; initial payload_ends = 1'b0;
-    // The cell that comes is the last one of the CRC.
+    // The current cell is the last one of the CRC.
     reg          crc_ends; initial crc_ends = 1'b0;
     // Clock pulses that the frame still needs.
     reg    [6:0] to_send; initial to_send = 7'd0;
     reg    [6:0] to_send_next;
-    // Bits of the answer as they come in; the payload from bit 0 on when they are aligned.
+    // Bits of the answer as they arrive; the payload from bit 0 on when aligned.
     reg   [49:0] word; initial word = 50'd0;
     reg   [49:0] word_next;
     // Cells that are skipped, then bits that are shifted in, modulo 15.
@@ -172,7 +172,7 @@ module s6_two_channel_receiver (
     reg          f2_bit_next;
     // CRC as received; bit 4 came first.
     reg    [4:0] crc_bits; initial crc_bits = 5'd0;
-    // CRC of the bits as they came; valid one cycle after take_crc.
+    // CRC of the bits as received; valid one cycle after take_crc.
     reg    [4:0] crc_calc; initial crc_calc = 5'd0;
     reg    [4:0] crc_calc_next;
     // High for one cycle when the last bit of the payload is in the word: its CRC is stored.
@@ -191,7 +191,7 @@ module s6_two_channel_receiver (
     reg          used; initial used = 1'b0;
     // High if the counts of cells and pulses agree that no cell is left.
     reg          ended; initial ended = 1'b0;
-    // High if the received CRC is that of the bits as they came.
+    // High if the received CRC equals that of the bits as received.
     reg          crc_equal; initial crc_equal = 1'b0;
     // High for one cycle after a start bit whose edge is outside the window.
     reg          refused; initial refused = 1'b0;
@@ -223,22 +223,22 @@ module s6_two_channel_receiver (
     assign width = payload_bits;
 
     always @* begin
-        // What a cycle begins with.
+        // Defaults of a cycle.
         skip_step = sample;
         if (acquire) begin
             skip_step = rise;
         end
     end
 
-    // A sample comes two cycles after the one before at least: the state has been registered by then.
+    // Samples are at least two cycles apart: the state has been registered by then.
     assign start_sample = is_hunting & sample & level;
-    // Cells and pulses.
-    // Where a bit has few system clock cycles cells go on until the end has been seen.
+    // Counts cells and pulses.
+    // With few system clock cycles in a bit, cells continue until the end has been detected.
     assign counts = sample & ((field != FIELD_DONE) | (|left[6:1]));
-    // Each cell has its pulse. How many cells there are before the start bit is not known: each of them is one pulse more.
+    // Each cell has its pulse. The number of cells before the start bit is unknown: each of them adds a pulse.
     assign one_more = sample & (field == FIELD_START);
     assign one_less = pulse | (acquire & rise & (field == FIELD_SKIP));
-    // Where a bit enters: the smallest of 5, 20, 35 and 50 bits that holds F1, F2 and the position.
+    // Entry of a bit: the smallest of 5, 20, 35 and 50 bits that holds F1, F2 and the position.
     assign in5 = width <= 6'd3;
     assign in20 = (width <= 6'd18) & !in5;
     assign in35 = (width <= 6'd33) & !in5 & !in20;
@@ -280,8 +280,8 @@ module s6_two_channel_receiver (
     assign crc_fits = crc_bits == crc_calc;
 
     always @* begin
-        // A frame, the next answer of a running clock, a supplement: what each begins with.
-        // Cells of the frame besides payload and additional data.
+        // Start values for a frame, the next answer of a running clock, and a supplement.
+        // Cells of the frame, excluding payload and additional data.
         cells_around = FIXED_CELLS;
         if (has_f2) begin
             cells_around = FIXED_CELLS + 7'd1;
@@ -345,7 +345,7 @@ module s6_two_channel_receiver (
             FIELD_PAYLOAD: begin
                 if (sample) begin
                     covered_bit = 1'b1;
-                    // This bit, five of the CRC, and what comes behind.
+                    // This bit, five of the CRC, and the cells after it.
                     if (payload_ends) begin
                         last_payload_next = 1'b1;
                         field_next = FIELD_CRC;
@@ -391,14 +391,14 @@ module s6_two_channel_receiver (
                 field_next = FIELD_DONE;
             end
         endcase
-        // Not in its arm: the edge of the start bit is known last.
+        // Outside the match arm: the edge of the start bit arrives last in the cycle.
         if (start_sample & edge_in_window) begin
             field_next = FIELD_F1;
         end
         if (shift) begin
             word_next = shifted;
         end
-        // What has been published is not needed here any more.
+        // The published word is no longer needed here.
         if (put) begin
             word_next = {2'd0, put_word};
         end
@@ -417,7 +417,7 @@ module s6_two_channel_receiver (
             left_next = {1'b0, payload_bits} + cells_around;
             to_send_next = {1'b0, payload_bits} + cells_around;
             word_next = 50'd0;
-            // Skipped cells take the counter to 0, where the covered bits start from.
+            // Skipped cells bring the counter to 0, the start value for the covered bits.
             covered_d = SKIP_FROM;
             skip_rounds_next = 2'd0;
             f2_bit_next = 1'b1;
@@ -429,7 +429,7 @@ module s6_two_channel_receiver (
         end
     end
 
-    // How far the answer is.
+    // Reports the progress of the answer.
     assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
     assign hunting = is_hunting;
     assign start_found = start_sample & edge_in_window;
@@ -486,8 +486,8 @@ module s6_two_channel_receiver (
         end else begin
             field <= field_next;
             left <= left_next;
-            // The parts of an answer, one after the other.
-            // Compared in the cycle before: a count stays for two cycles at least.
+            // Steps through the parts of an answer.
+            // Compared in the previous cycle: a count is stable for at least two cycles.
             payload_ends <= left == 7'd7;
             crc_ends <= left == 7'd2;
             to_send <= to_send_next;
@@ -495,7 +495,7 @@ module s6_two_channel_receiver (
             covered <= covered_d;
             f1_bit <= f1_bit_next;
             f2_bit <= f2_bit_next;
-            // The CRC as received, and the guard's look at the stored word.
+            // The received CRC, and the guard's check of the stored word.
             if (crc_bit) begin
                 crc_bits <= {crc_bits[3:0], level};
             end
@@ -505,17 +505,16 @@ module s6_two_channel_receiver (
             crc_calc <= crc_calc_next;
             take_crc <= last_payload;
             align <= align_next;
-            // The word is aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
+            // The word is aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have entered; never after the first shift.
             align_first <= take_crc;
             last_taken <= last_taken_next;
             is_complete <= is_taken;
-            // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the
-            // cause's path.
+            // Evaluated at least a cycle after the last count: this keeps three comparisons out of the path of the cause.
             used <= all_sent & (left == 7'd1);
             ended <= all_sent & none_under_way;
             crc_equal <= crc_fits;
             refused <= start_sample & !edge_in_window;
-            // One cycle later than the sample: the whole word hangs on this enable.
+            // One cycle after the sample: this enable drives the whole word.
             shifting <= covered_bit;
             bit_held <= level;
             last_payload <= last_payload_next;

@@ -4,61 +4,61 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Register bank: the card's own words, and the decoder in front of all words.
+// Register bank: the card's own words, and the decoder for all words.
 //
-// access, word_address, lane --> turning: one turn of the configuration ring; other words: until their byte is there --> done
+// access, word_address, lane --> turning: one turn of the configuration ring; other words: until their byte is ready --> done
 //                                   |
 //        constants ---------+       +-- the byte passing the head is read, or replaced by the one to write
 //        trigger count -----+
 //        ring byte ---------OR--> read_byte
 //        results of channels+
-// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and kept
-// until done; an access that comes before is not begun. Only which byte is shown follows the front: a front that changes the
-// address reads another byte.
-// Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them,
-// and not from the first to the last result of a trigger: half of it is new, the other half is not.
-// The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it
-// would have no end. For a host that reads in step with the triggers, so that the words may never follow between two reads, they
-// follow as the read begins, if the second trigger has come by then. See docs/host-link.md.
+// **A front cannot stop the ring half way, nor write elsewhere.** Address and direction of an access are latched with access and
+// kept until done; an earlier access is ignored. Only the selected byte follows the front: a front that changes the address reads
+// another byte.
+//
+// Results of all channels are held together. They follow the channels, except while they are read or the host holds them, and
+// between the first and the last result of a trigger, when only some of them are new.
+// The wait for the last result ends with the next trigger that a channel takes; if the channels are never ready together it would
+// not end. A host that reads in step with the triggers might always block the update between two reads. So the results are updated
+// at the start of a read if the second trigger has come by then. See docs/host-link.md.
 module s6_two_channel_register_bank (
     // System clock.
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // Word address; what stood there in the cycle before access counts until done.
+    // Word address; the value in the cycle before access applies until done.
     input  wire  [10:0] word_address,
-    // The front's address fits word_address; otherwise a read gives 0 and a write does nothing. It counts like the address.
+    // The front's address fits word_address; otherwise a read gives 0 and a write has no effect. Timing as for the address.
     input  wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     input  wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
-    // nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Ignored before done of the last access.
     input  wire         access,
     // With access: write a word; low = read a byte.
     input  wire         write,
-    // Word to write; moves up by a byte in each cycle with take_byte.
+    // Word to write; shifts up by a byte in each cycle with take_byte.
     input  wire  [31:0] write_data,
     // The host is reading: results must not change.
     input  wire         reading,
-    // A byte of the configuration word passes the head, most significant first: in a write that of write_data replaces it.
+    // A byte of the configuration word passes the head, most significant first; a write replaces it by that of write_data.
     output wire         take_byte,
     // Byte that was read, from done to the next access.
     output wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
     output wire         done,
-    // One-cycle strobe: the access begins, in the cycle of access.
+    // One-cycle strobe: an access begins, in the cycle of access.
     output wire         begins,
-    // Word address of the access that begins or is being carried out.
+    // Word address of the access that begins or is under way.
     output wire  [10:0] address,
     // Strobe: a channel takes a trigger.
     input  wire         taken,
-    // A channel owes a result of the last trigger that was taken.
+    // A result of the last accepted trigger is missing.
     input  wire         owes,
-    // Strobe: a channel has brought its result of that trigger.
+    // Strobe: a channel has delivered its result of that trigger.
     input  wire         brought,
     // The held results follow the channels.
     output wire         load,
-    // Nothing is being read: age and stale of the held results go on.
+    // No read is under way: age and stale of the held results are updated.
     output wire         show,
     // Result words that are not read, one bit per word.
     output wire   [5:0] word_skip,
@@ -66,7 +66,7 @@ module s6_two_channel_register_bank (
     output wire   [7:0] channel_skip,
     // Result byte of the channels.
     input  wire   [7:0] channel_byte,
-    // The configuration ring moves on by one byte.
+    // The configuration ring advances by one byte.
     output wire         ring_turn,
     // The configuration ring is at rest.
     output wire         ring_home,
@@ -74,9 +74,9 @@ module s6_two_channel_register_bank (
     input  wire   [8:0] ring_in,
     // Byte to the last channel's ring block.
     output wire   [8:0] ring_out,
-    // The word is one of the stream's four.
+    // The word belongs to the stream.
     output wire         stream_selected,
-    // Byte that was read from the words of stream, direct outputs and interrupt; 0 if it is none of them.
+    // Byte read from the words of stream, direct outputs and interrupt; 0 for other words.
     input  wire   [7:0] part_byte,
     // Triggers since reset.
     input  wire  [31:0] trigger_count,
@@ -160,7 +160,7 @@ module s6_two_channel_register_bank (
     reg          turn; initial turn = 1'b0;
     // High while a byte of the accessed configuration word is at the head.
     reg          passes; initial passes = 1'b0;
-    // High while the byte of passes is the one that the front asks for.
+    // High while the byte of passes is the byte that the front selects.
     reg          byte_passes; initial byte_passes = 1'b0;
     // High for one cycle after the last cycle of turning.
     reg          ended; initial ended = 1'b0;
@@ -221,13 +221,13 @@ module s6_two_channel_register_bank (
         .word2(ring_word2)
     );
 
-    // Address and direction of an access are kept from its start to its end, whatever the front shows.
+    // Address and direction of an access are kept from its start to its end, whatever the front does.
     assign busy = turning | ended;
     assign starts = access & !busy;
     assign begins = starts;
     assign address = held_address;
-    // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its
-    // own. They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
+    // One turn for a configuration word. The counters run one cycle ahead of the ring, which leaves a full cycle for comparing
+    // them. They also time the halves of a written RAM word; every other access ends when its byte is ready.
     assign whole_turn = config_page;
     assign block_end = byte_at == 4'd11;
 
@@ -242,7 +242,7 @@ module s6_two_channel_register_bank (
     assign ring_turn = turn;
     assign ring_home = !turn;
     assign done = done_strobe;
-    // Configuration: the ring carries 3 of the 8 words that a block has room for.
+    // Configuration: the ring holds 3 of the 8 words of a block.
     assign low_page = in_range & !(|word_address[10:9]);
     assign low_address = word_address[8:0];
     assign at_word = turning & config_page & (block_at == held_address[6:3]) & (byte_at[3:2] == held_address[1:0]);
@@ -287,7 +287,7 @@ module s6_two_channel_register_bank (
         endcase
     end
 
-    // Strobes, and the settings of the card.
+    // Strobes and settings of the card.
     assign strobe = starts & write & low_page;
     assign trigger_now = trigger_strobe;
     assign calibrate = calibrate_strobe;
@@ -427,7 +427,7 @@ module s6_two_channel_register_bank (
             if (starts) begin
                 ring_byte <= 8'd0;
             end
-            // The byte that is read.
+            // Selects the byte that is read.
             byte_value <= rom_byte | count_byte | ring_byte | channel_byte | part_byte;
             trigger_strobe <= strobe & (low_address == TRIGGER_NOW_AT) & write_data[0];
             calibrate_strobe <= 8'd0;
@@ -441,7 +441,7 @@ module s6_two_channel_register_bank (
             end
             blocked <= blocked_now;
             // Results.
-            // Reading blocks a cycle late: the first byte is read later still.
+            // Reading blocks one cycle late; the first byte is read even later.
             read_before <= reading;
             mixed <= mixed_now & !taken;
             if (load_now) begin

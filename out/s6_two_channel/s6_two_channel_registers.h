@@ -50,7 +50,7 @@
 #define S6_TWO_CHANNEL_CARD_VERSION_MAJOR_SHIFT 24u
 #define S6_TWO_CHANNEL_CARD_VERSION_MAJOR_MASK 0xFF000000u
 
-/* ro: What this card has. */
+/* ro: Features of this card. */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_WORD 0x002u
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_BYTE 0x0008u
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_RESET 0x080F3002u
@@ -71,14 +71,14 @@
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_INITIALISE 0x20u /* initialisation */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_DIAGNOSIS 0x40u /* diagnosis of the line */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_CONTINUOUS 0x80u /* continuous clock */
-#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_ALIGNMENT 0x100u /* phase at the host's choice, mean over many edges */
-#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_MARGIN 0x200u /* margin of the samples */
-#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_DOUBLE_EDGE 0x400u /* DATA on both edges of the system clock */
+#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_ALIGNMENT 0x100u /* selectable sampling phase, mean of many edges */
+#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_MARGIN 0x200u /* timing margin of the samples */
+#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_DOUBLE_EDGE 0x400u /* DATA sampled on both edges of the system clock */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_STREAM 0x800u /* stream of sample sets */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_DIRECT 0x1000u /* direct outputs */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_INTERRUPT 0x2000u /* interrupt */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_T_FORMAT 0x4000u /* T-format channels */
-#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_OWN_TRIGGER 0x8000u /* enable, divider and sources of triggers of each channel */
+#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_OWN_TRIGGER 0x8000u /* enable, divider and trigger sources for each channel */
 
 /* ro: System clock: the unit of every number of cycles. */
 #define S6_TWO_CHANNEL_CARD_SYSTEM_HZ_WORD 0x003u
@@ -88,36 +88,36 @@
 #define S6_TWO_CHANNEL_CARD_SYSTEM_HZ_VALUE_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_SYSTEM_HZ_VALUE_MASK 0xFFFFFFFFu
 
-/* ro: Tells which configuration the card was generated from. */
+/* ro: Hash of the configuration from which the card was generated. */
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_WORD 0x004u
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_BYTE 0x0010u
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_RESET 0x4372D9D9u
-/* value: First 8 digits of the hash that stands in the generated files */
+/* value: First 8 digits of the configuration hash in the generated files */
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_VALUE_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_VALUE_MASK 0xFFFFFFFFu
 
-/* ro: Which channels speak another protocol than EnDat, what sets of the stream have, and further parts. */
+/* ro: Channels with another protocol than EnDat, content of stream sets, further features. */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_WORD 0x005u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_BYTE 0x0014u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_RESET 0x00000000u
 /* t_format: T-format: bit n for channel n */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_T_FORMAT_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_T_FORMAT_MASK 0x000000FFu
-/* stream_additional_data: 1: sets of the stream have the additional data */
+/* stream_additional_data: 1: stream sets include additional data */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_SHIFT 8u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_MASK 0x00000100u
-/* features: Parts that have no place in capabilities.features */
+/* features: Features that do not fit into capabilities.features */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SHIFT 16u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_MASK 0x00FF0000u
-#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured a second time */
-#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE 0x2u /* results for a second controller, over an SPI that can only be read */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured independently */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE 0x2u /* results for a second controller, over a read-only SPI */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SECOND_RECEIVER 0x4u /* second receiver in lockstep */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_ERROR_TEST 0x8u /* forced errors on a schedule */
 /* ssi: SSI: bit n for channel n */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_SSI_SHIFT 24u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_SSI_MASK 0xFF000000u
 
-/* ro: Triggers since reset; stands still with the results (see hold). */
+/* ro: Triggers since reset; frozen while the results are held (see hold). */
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_WORD 0x008u
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_BYTE 0x0020u
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_RESET 0x00000000u
@@ -125,7 +125,7 @@
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_VALUE_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_VALUE_MASK 0xFFFFFFFFu
 
-/* strobe: Triggers all channels that take it, if sources allows it. */
+/* strobe: Triggers all channels that accept it, if sources enables the register. */
 #define S6_TWO_CHANNEL_CARD_TRIGGER_NOW_WORD 0x009u
 #define S6_TWO_CHANNEL_CARD_TRIGGER_NOW_BYTE 0x0024u
 #define S6_TWO_CHANNEL_CARD_TRIGGER_NOW_RESET 0x00000000u
@@ -133,7 +133,7 @@
 #define S6_TWO_CHANNEL_CARD_TRIGGER_NOW_TRIGGER_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_TRIGGER_NOW_TRIGGER_MASK 0x00000001u
 
-/* strobe: Makes channels measure their line delay again, with their next frame. */
+/* strobe: Channels measure their line delay again with their next frame. */
 #define S6_TWO_CHANNEL_CARD_CALIBRATE_WORD 0x00Au
 #define S6_TWO_CHANNEL_CARD_CALIBRATE_BYTE 0x0028u
 #define S6_TWO_CHANNEL_CARD_CALIBRATE_RESET 0x00000000u
@@ -141,37 +141,37 @@
 #define S6_TWO_CHANNEL_CARD_CALIBRATE_CHANNELS_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_CALIBRATE_CHANNELS_MASK 0x000000FFu
 
-/* rw: What the stream of sample sets does. */
+/* rw: Enables of the sample stream. */
 #define S6_TWO_CHANNEL_CARD_STREAM_CONTROL_WORD 0x00Cu
 #define S6_TWO_CHANNEL_CARD_STREAM_CONTROL_BYTE 0x0030u
 #define S6_TWO_CHANNEL_CARD_STREAM_CONTROL_RESET 0x00000000u
-/* collect: Triggers make sets */
+/* collect: 1: triggers produce sets */
 #define S6_TWO_CHANNEL_CARD_STREAM_CONTROL_COLLECT_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_STREAM_CONTROL_COLLECT_MASK 0x00000001u
-/* push: Frames go out over the UART */
+/* push: 1: the UART sends frames */
 #define S6_TWO_CHANNEL_CARD_STREAM_CONTROL_PUSH_SHIFT 1u
 #define S6_TWO_CHANNEL_CARD_STREAM_CONTROL_PUSH_MASK 0x00000002u
 
-/* ro: What is in the stream's buffer, and what did not get in. */
+/* ro: Fill level of the stream buffer, and lost sets. */
 #define S6_TWO_CHANNEL_CARD_STREAM_STATE_WORD 0x00Du
 #define S6_TWO_CHANNEL_CARD_STREAM_STATE_BYTE 0x0034u
 #define S6_TWO_CHANNEL_CARD_STREAM_STATE_RESET 0x00000000u
-/* bytes: Bytes that wait (bytes) */
+/* bytes: Bytes in the buffer (bytes) */
 #define S6_TWO_CHANNEL_CARD_STREAM_STATE_BYTES_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_STREAM_STATE_BYTES_MASK 0x0000FFFFu
 /* lost: Sets lost since clear; stops at 65535 */
 #define S6_TWO_CHANNEL_CARD_STREAM_STATE_LOST_SHIFT 16u
 #define S6_TWO_CHANNEL_CARD_STREAM_STATE_LOST_MASK 0xFFFF0000u
 
-/* ro: Takes the next bytes of the stream out of the buffer. */
+/* ro: Reads and removes the next bytes of the stream from the buffer. */
 #define S6_TWO_CHANNEL_CARD_STREAM_DATA_WORD 0x00Eu
 #define S6_TWO_CHANNEL_CARD_STREAM_DATA_BYTE 0x0038u
 #define S6_TWO_CHANNEL_CARD_STREAM_DATA_RESET 0x00000000u
-/* bytes: First byte in bits 31..24; what is not there is 0 */
+/* bytes: First byte in bits 31..24; missing bytes read 0 */
 #define S6_TWO_CHANNEL_CARD_STREAM_DATA_BYTES_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_STREAM_DATA_BYTES_MASK 0xFFFFFFFFu
 
-/* strobe: Empties the buffer, forgets what was lost. */
+/* strobe: Empties the buffer and clears stream_status.lost. */
 #define S6_TWO_CHANNEL_CARD_STREAM_CLEAR_WORD 0x00Fu
 #define S6_TWO_CHANNEL_CARD_STREAM_CLEAR_BYTE 0x003Cu
 #define S6_TWO_CHANNEL_CARD_STREAM_CLEAR_RESET 0x00000000u
@@ -185,7 +185,7 @@
 #define S6_TWO_CHANNEL_CARD_CONFIG_BASE_WORD 0x100u
 #define S6_TWO_CHANNEL_CARD_CONFIG_BASE_BYTE 0x0400u
 
-/* rw: Enabled trigger sources; one trigger starts all channels that take it in the same clock cycle. */
+/* rw: Enabled trigger sources; one trigger starts all channels that accept it in the same clock cycle. */
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_SOURCES_WORD 0x100u
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_SOURCES_BYTE 0x0400u
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_SOURCES_RESET 0x00000003u
@@ -198,7 +198,7 @@
 /* register: trigger_now */
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_SOURCES_REGISTER_SHIFT 2u
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_SOURCES_REGISTER_MASK 0x00000004u
-/* disabled: Channels that take no trigger, bit n for channel n; with part own_trigger only */
+/* disabled: Channels that ignore triggers, bit n for channel n; with part own_trigger only */
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_SOURCES_DISABLED_SHIFT 8u
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_SOURCES_DISABLED_MASK 0x0000FF00u
 
@@ -210,42 +210,42 @@
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_PERIOD_VALUE_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_CONFIG_TRIGGER_PERIOD_VALUE_MASK 0x00FFFFFFu
 
-/* rw: Keeps the results of all channels, for a host that reads word by word. */
+/* rw: Holds the results of all channels, for a host that reads word by word. */
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_WORD 0x102u
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_BYTE 0x0408u
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_RESET 0x00000000u
-/* hold: 1: results and trigger_count stand still */
+/* hold: 1: results and trigger_count are frozen */
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_HOLD_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_HOLD_MASK 0x00000001u
-/* scratch: Free for the host: a driver tries the link with it, a recording leaves a mark that a restart clears */
+/* scratch: Free for the host: link test of a driver, restart mark of a recording */
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_SCRATCH_SHIFT 8u
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_SCRATCH_MASK 0xFFFFFF00u
 
 /* ---- config ---------------------------------------------------------------- */
 
-/* Configuration of a channel; taken over between two frames. */
+/* Configuration of a channel; takes effect between two frames. */
 #define S6_TWO_CHANNEL_CONFIG_BASE_WORD 0x108u
 #define S6_TWO_CHANNEL_CONFIG_BASE_BYTE 0x0420u
 #define S6_TWO_CHANNEL_CONFIG_STRIDE_WORDS 8u
 #define S6_TWO_CHANNEL_CONFIG_STRIDE_BYTES 32u
 
-/* rw: What is asked of the encoder, and how fast. */
+/* rw: Command to the encoder, and clock rate. */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_WORD(channel) (0x108u + 8u * (channel))
 #define S6_TWO_CHANNEL_CONFIG_FRAME_BYTE(channel) (0x0420u + 32u * (channel))
 #define S6_TWO_CHANNEL_CONFIG_FRAME_RESET 0x381D0020u
-/* period_cycles: EnDat clock period; the high phase is the longer one when odd; T-format: a bit, 8..127 (cycles) */
+/* period_cycles: EnDat clock period; if odd, the high phase is longer; T-format: a bit, 8..127 (cycles) */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_PERIOD_CYCLES_SHIFT 0u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_PERIOD_CYCLES_MASK 0x000007FFu
-/* skip: Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources */
+/* skip: Triggers to skip after each accepted one; with part own_trigger only, as the ignored sources */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_SKIP_SHIFT 11u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_SKIP_MASK 0x0000F800u
-/* position_bits: Position width, 1..48; T-format: bits of angle and turns together if limits.range says rotary, else no meaning, as command (bits) */
+/* position_bits: Position width, 1..48; T-format: bits of angle and turns together if limits.range is rotary, else unused, as command (bits) */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_POSITION_BITS_SHIFT 16u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_POSITION_BITS_MASK 0x003F0000u
-/* ignore_pin: 1: the trigger pin is not for this channel */
+/* ignore_pin: 1: the channel ignores the trigger pin */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_IGNORE_PIN_SHIFT 22u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_IGNORE_PIN_MASK 0x00400000u
-/* ignore_timer: 1: the timer is not */
+/* ignore_timer: 1: the channel ignores the timer */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_IGNORE_TIMER_SHIFT 23u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_IGNORE_TIMER_MASK 0x00800000u
 /* command: Mode command, sent most significant bit first */
@@ -253,7 +253,7 @@
 #define S6_TWO_CHANNEL_CONFIG_FRAME_COMMAND_MASK 0x3F000000u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_COMMAND_SEND_POSITION 7u /* 000111 send position (EnDat 2.1) */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional data (EnDat 2.2) */
-/* ignore_register: 1: trigger_now is not */
+/* ignore_register: 1: the channel ignores trigger_now */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_IGNORE_REGISTER_SHIFT 30u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_IGNORE_REGISTER_MASK 0x40000000u
 
@@ -264,10 +264,10 @@
 /* first_low_extra_cycles: First low phase minus half a period (tST) (cycles) */
 #define S6_TWO_CHANNEL_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_SHIFT 0u
 #define S6_TWO_CHANNEL_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_MASK 0x000007FFu
-/* multi_turn_bits: Upper bits of the position that count turns, if limits.range says rotary; for the host only. T-format: of bits 47..24, up to 24 (bits) */
+/* multi_turn_bits: Upper bits of the position that count turns, if limits.range is rotary; only the host uses it. T-format: of bits 47..24, up to 24 (bits) */
 #define S6_TWO_CHANNEL_CONFIG_TIMING_MULTI_TURN_BITS_SHIFT 11u
 #define S6_TWO_CHANNEL_CONFIG_TIMING_MULTI_TURN_BITS_MASK 0x0000F800u
-/* start_window_cycles: The start edge must come within plus or minus this of its expected phase (cycles) */
+/* start_window_cycles: Tolerance of the start edge around its expected phase (cycles) */
 #define S6_TWO_CHANNEL_CONFIG_TIMING_START_WINDOW_CYCLES_SHIFT 16u
 #define S6_TWO_CHANNEL_CONFIG_TIMING_START_WINDOW_CYCLES_MASK 0x003F0000u
 /* filter_half: 1: half a cycle more; with part double_edge only */
@@ -276,24 +276,24 @@
 /* filter_cycles: Pulses on DATA up to this length are ignored; 0 = off (cycles) */
 #define S6_TWO_CHANNEL_CONFIG_TIMING_FILTER_CYCLES_SHIFT 24u
 #define S6_TWO_CHANNEL_CONFIG_TIMING_FILTER_CYCLES_MASK 0x0F000000u
-/* request_id: T-format: request ID of a trigger; 6 and 13 are not sent */
+/* request_id: T-format: request ID of a trigger; 6 and 13 are rejected */
 #define S6_TWO_CHANNEL_CONFIG_TIMING_REQUEST_ID_SHIFT 28u
 #define S6_TWO_CHANNEL_CONFIG_TIMING_REQUEST_ID_MASK 0xF0000000u
 
-/* rw: Longest waits; what the position is. */
+/* rw: Timeouts; kind of position. */
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_WORD(channel) (0x10Au + 8u * (channel))
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_BYTE(channel) (0x0428u + 32u * (channel))
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_RESET 0x0C501012u
 /* start_timeout_us: Longest wait for the start bit after the turnaround; T-format: longest pause before the reply, 1..63 (us) */
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_START_TIMEOUT_US_SHIFT 0u
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_START_TIMEOUT_US_MASK 0x00000FFFu
-/* range: What the position is; for the host only */
+/* range: Kind of position; only the host uses it */
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_RANGE_SHIFT 12u
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_RANGE_MASK 0x00003000u
-#define S6_TWO_CHANNEL_CONFIG_LIMITS_RANGE_UNKNOWN 0u /* not given: the encoder's name plate has it, or nobody */
+#define S6_TWO_CHANNEL_CONFIG_LIMITS_RANGE_UNKNOWN 0u /* not given here; the name plate may have it */
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_RANGE_ROTARY 1u /* multi_turn_bits count turns, the bits below them the angle */
-#define S6_TWO_CHANNEL_CONFIG_LIMITS_RANGE_LINEAR 2u /* no bit counts turns, and the position does not wrap */
-/* recovery_limit_cycles: DATA must fall within this after the frame (tm) (cycles) */
+#define S6_TWO_CHANNEL_CONFIG_LIMITS_RANGE_LINEAR 2u /* no turn bits; the position does not wrap */
+/* recovery_limit_cycles: DATA must fall within this time after the frame (tm) (cycles) */
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES_SHIFT 16u
 #define S6_TWO_CHANNEL_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES_MASK 0x1FFF0000u
 /* field_gap_us: T-format: longest pause between two fields (us) */
@@ -308,14 +308,14 @@
 #define S6_TWO_CHANNEL_RESULT_STRIDE_WORDS 8u
 #define S6_TWO_CHANNEL_RESULT_STRIDE_BYTES 32u
 
-/* ro: What became of the last trigger. */
+/* ro: Outcome of the last trigger. */
 #define S6_TWO_CHANNEL_RESULT_STATUS_WORD(channel) (0x180u + 8u * (channel))
 #define S6_TWO_CHANNEL_RESULT_STATUS_BYTE(channel) (0x0600u + 32u * (channel))
 #define S6_TWO_CHANNEL_RESULT_STATUS_RESET 0x00000000u
 /* sequence: Number of results, wrapping */
 #define S6_TWO_CHANNEL_RESULT_STATUS_SEQUENCE_SHIFT 0u
 #define S6_TWO_CHANNEL_RESULT_STATUS_SEQUENCE_MASK 0x0000FFFFu
-/* cause: Primary cause; some come with a good position: fresh tells */
+/* cause: Primary cause. With some causes the position is good: then fresh is 1 */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_SHIFT 16u
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_MASK 0x001F0000u
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_NONE 0u /* none */
@@ -337,13 +337,13 @@
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_OWN_ECHO 16u /* echo of the own command */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_RECOVERY_TOO_SHORT 17u /* recovery time too short */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_UPSET 31u /* stored data upset */
-/* valid: There is a good position */
+/* valid: A good position is available */
 #define S6_TWO_CHANNEL_RESULT_STATUS_VALID_SHIFT 22u
 #define S6_TWO_CHANNEL_RESULT_STATUS_VALID_MASK 0x00400000u
-/* fresh: The last result brought the position; 0 = held from an earlier one */
+/* fresh: 1: the last result brought the position; 0: held from an earlier result */
 #define S6_TWO_CHANNEL_RESULT_STATUS_FRESH_SHIFT 23u
 #define S6_TWO_CHANNEL_RESULT_STATUS_FRESH_MASK 0x00800000u
-/* line: Raw flags that evidence has no room for */
+/* line: Raw flags that do not fit into evidence */
 #define S6_TWO_CHANNEL_RESULT_STATUS_LINE_SHIFT 24u
 #define S6_TWO_CHANNEL_RESULT_STATUS_LINE_MASK 0xFF000000u
 #define S6_TWO_CHANNEL_RESULT_STATUS_LINE_NO_ENCODER 0x1u /* no encoder */
@@ -370,17 +370,17 @@
 /* value: 0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0 */
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_VALUE_SHIFT 0u
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_VALUE_MASK 0x0000FFFFu
-/* crc: CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more; T-format: 0 */
+/* crc: CRC received with this position, over F1, F2 and the position, LSB first, for a check by the host; T-format: 0 */
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_CRC_SHIFT 16u
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_CRC_MASK 0x001F0000u
 /* f2: The position came with F2 = 1 (EnDat 2.2); F1 of a good position is 0 */
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_F2_SHIFT 22u
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_F2_MASK 0x00400000u
-/* width: Width of this position; 0 = there is none yet, or T-format: nothing to check (bits) */
+/* width: Width of this position; 0 = no position yet, or T-format: no check (bits) */
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_WIDTH_SHIFT 24u
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_WIDTH_MASK 0x3F000000u
 
-/* ro: First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request. */
+/* ro: First falling clock edge of the frame that brought the position; equal in two EnDat channels: same trigger. T-format: start bit of the request. */
 #define S6_TWO_CHANNEL_RESULT_TIMESTAMP_WORD(channel) (0x183u + 8u * (channel))
 #define S6_TWO_CHANNEL_RESULT_TIMESTAMP_BYTE(channel) (0x060Cu + 32u * (channel))
 #define S6_TWO_CHANNEL_RESULT_TIMESTAMP_RESET 0x00000000u
@@ -388,7 +388,7 @@
 #define S6_TWO_CHANNEL_RESULT_TIMESTAMP_VALUE_SHIFT 0u
 #define S6_TWO_CHANNEL_RESULT_TIMESTAMP_VALUE_MASK 0xFFFFFFFFu
 
-/* ro: How good the last frame was. */
+/* ro: Quality of the last frame. */
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_WORD(channel) (0x184u + 8u * (channel))
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_BYTE(channel) (0x0610u + 32u * (channel))
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_RESET 0x00000000u
@@ -398,10 +398,10 @@
 /* crc_computed: CRC as computed */
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_CRC_COMPUTED_SHIFT 5u
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_CRC_COMPUTED_MASK 0x000003E0u
-/* delay_cycles: Tracked line delay tD, synchroniser and filter included (cycles) */
+/* delay_cycles: Tracked line delay tD, including synchroniser and filter (cycles) */
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_DELAY_CYCLES_SHIFT 10u
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_DELAY_CYCLES_MASK 0x000FFC00u
-/* flags: Raw flags; the rest of them is status.line */
+/* flags: Raw flags; status.line has the others */
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_FLAGS_SHIFT 20u
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_FLAGS_MASK 0xFFF00000u
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_FLAGS_DATA_NOT_LOW 0x1u /* data not low before start */
@@ -421,7 +421,7 @@
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_WORD(channel) (0x185u + 8u * (channel))
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_BYTE(channel) (0x0614u + 32u * (channel))
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_RESET 0x00000000u
-/* age_us: Age of the position: 0 until its frame has ended, counted from there, also while results are held; stops at 65535 (us) */
+/* age_us: Age of the position, counted from the end of its frame (0 until then), also while results are held; stops at 65535 (us) */
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_AGE_US_SHIFT 0u
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_AGE_US_MASK 0x0000FFFFu
 /* recovery_cycles: Recovery time tm of the last frame (cycles) */
@@ -430,7 +430,7 @@
 /* delay_high: Bit 10 of delay_cycles */
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_DELAY_HIGH_SHIFT 29u
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_DELAY_HIGH_MASK 0x20000000u
-/* stale: A trigger of this channel has come since this result */
+/* stale: The channel has had a trigger since this result */
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_STALE_SHIFT 30u
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_STALE_MASK 0x40000000u
 

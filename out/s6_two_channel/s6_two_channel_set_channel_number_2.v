@@ -4,28 +4,27 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// One channel's part of a sample set: which trigger it took, and its result when the set is closed.
+// One channel's part of a sample set: whether it took the trigger, and its result when the set is closed.
 //
 // trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
 //                     ^   |                 ^
-// result strobe ------+---+-- owes nothing: the set may be closed
-// Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own,
-// one of them may be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty
-// place in the next one.
+// result strobe ------+---+-- no result missing: the set may be closed
+// Everything is latched in one cycle, so later values cannot enter the set. With separate triggers, a channel may be slower than
+// the triggers. Its result, which was missing when its set was closed, goes into the channel's empty place in the next set.
 module s6_two_channel_set_channel_number_2 (
     // System clock.
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // Strobe: the trigger with which a set begins.
+    // Strobe: the trigger that starts a set.
     input  wire         trigger,
-    // The channel does not take a trigger.
+    // A trigger would be lost.
     input  wire         busy,
-    // Strobe: a new result is there.
+    // Strobe: a new result is valid.
     input  wire         result_strobe,
     // Last good position.
     input  wire  [47:0] position,
-    // There is a good position.
+    // A good position is available.
     input  wire         position_valid,
     // The last result brought the position.
     input  wire         fresh,
@@ -33,17 +32,17 @@ module s6_two_channel_set_channel_number_2 (
     input  wire   [4:0] cause,
     // Raw flags of the last result.
     input  wire  [19:0] flags,
-    // Strobe: the set is closed, its content is what is there now.
+    // Strobe: the set is closed; latch the current values.
     input  wire         take,
-    // Which 8 bytes of the set are asked for: channel n has number n + 1.
+    // Requested 8 bytes of the set: channel n has number n + 1.
     input  wire   [3:0] block,
-    // Which of them: 0 = least significant byte of the position, 6 and 7 = status.
+    // Requested byte of these: 0 = least significant byte of the position, 6 and 7 = status.
     input  wire   [2:0] byte_at,
-    // The byte, 1 cycle later; 0 if another channel's is asked for.
+    // The byte, 1 cycle later; 0 for other channels.
     output wire   [7:0] set_byte,
-    // The channel took the trigger, and its result is not there yet.
+    // The channel took the trigger, and its result is still missing.
     output wire         owes,
-    // The result of the trigger has been replaced by another one (continuous clock).
+    // A later result has replaced that of the trigger (continuous clock).
     output wire         replaced
 );
     // Number of this channel's block in a set.
@@ -51,21 +50,21 @@ module s6_two_channel_set_channel_number_2 (
 
     // High if the channel took the trigger of the set and has its result.
     wire         is_own;
-    // High for one cycle when the channel's entry in the set is cleared: it has no result for it.
+    // High for one cycle when the channel's entry in the set is cleared, because it has no result.
     wire         empties;
-    // High if the block that is asked for is not this channel's.
+    // High if another block is requested.
     wire         is_other;
     // High while the result of the trigger is missing.
     wire         open;
     // Cause, flags, valid and fresh of this cycle's result.
     wire  [15:0] status;
-    // Byte that goes out: the stored one, or the cause of an upset in its place.
+    // Byte to send: the stored one, or the cause of an upset instead.
     wire   [7:0] shown;
     // High if the channel took the last trigger.
     reg          took; initial took = 1'b0;
     // High from a trigger that the channel took until its result.
     reg          waiting; initial waiting = 1'b0;
-    // Position in the set that is being written; 0 if the channel has none for it.
+    // Position in the set that is being written; 0 if there is none.
     reg   [47:0] position_taken; initial position_taken = 48'd0;
     // Cause, flags, valid and fresh in the set that is being written.
     reg   [15:0] status_taken; initial status_taken = 16'd0;
@@ -73,7 +72,7 @@ module s6_two_channel_set_channel_number_2 (
     reg          took_taken; initial took_taken = 1'b0;
     // High if the result was missing when that set was closed.
     reg          missing_taken; initial missing_taken = 1'b0;
-    // Byte of position or status that is asked for; 0 while another block is.
+    // Requested byte of position or status; 0 for other blocks.
     reg    [7:0] set_byte_held; initial set_byte_held = 8'd0;
     wire         _unused_ok = &{1'b0, flags[11:0], flags[19]};
 
@@ -84,7 +83,7 @@ module s6_two_channel_set_channel_number_2 (
     assign is_own = took & !open;
     assign empties = take & !is_own;
     assign status = {1'b0, flags[18:12], fresh, position_valid, 1'b0, cause};
-    // Reported with the first status byte; the bytes before it have been sent.
+    // Reported in the first status byte; the bytes before it have been sent.
     assign is_other = block != NUMBER;
     assign shown = set_byte_held;
     assign set_byte = shown;

@@ -6,9 +6,9 @@
 
 // Snapshot: one result per trigger, changed in one clock cycle, with the last good position held.
 //
-// publish    __/\__________________    position, time stamp and what checks them change places with those before
-// confirm    ____________/\________    the frame has ended as it should: the result before is discarded
-// withdraw   ____________/\________    or it has not: the result before comes back
+// publish    __/\__________________    position, time stamp and check bits are exchanged with the previous ones
+// confirm    ____________/\________    the frame has ended normally: the previous result is discarded
+// withdraw   ____________/\________    the frame has failed: the previous result returns
 //
 // Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 module s6_two_channel_snapshot (
@@ -26,11 +26,11 @@ module s6_two_channel_snapshot (
     input  wire         publish,
     // With publish: the position is good.
     input  wire         good,
-    // Strobe: something was wrong after the result was published; cause and flags replace those of the result.
+    // Strobe: a fault was found after the result was published; cause and flags replace those of the result.
     input  wire         late_fault,
-    // Strobe: the published position is not good after all; the one before comes back.
+    // Strobe: the published position is not good after all; the previous one returns.
     input  wire         withdraw,
-    // Strobe: the published position stands, nothing can withdraw it any more.
+    // Strobe: the published position is final.
     input  wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     input  wire   [4:0] cause_told,
@@ -50,7 +50,7 @@ module s6_two_channel_snapshot (
     output wire         result_strobe,
     // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     output wire  [47:0] position,
-    // There is a good position.
+    // A good position is available.
     output wire         position_valid,
     // The last result brought the position, or in T-format a part of it; low = held from an earlier frame.
     output wire         fresh,
@@ -68,47 +68,47 @@ module s6_two_channel_snapshot (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in
+    // CRC received with the position. With the error bits of a good frame and the width, a host can check what it has read. 0 in
     // T-format.
     output wire   [4:0] position_crc,
     // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
     // The position came with F2 (EnDat 2.2); its error bits are F1 = 0, F2 = 1.
     output wire         position_has_f2,
-    // Strobe: what gave the position takes the one that is held in its place.
+    // Strobe: the source of the position loads the held position in exchange.
     output wire         swap
 );
     // High for one cycle when a good position is published.
     wire         take_good;
     // High for one cycle when the published position is withdrawn.
     wire         take_back;
-    // Age that is shown: 0 while the position is not confirmed and can come back.
+    // Age at the output: 0 while the position is not confirmed and the previous one can return.
     reg   [15:0] age_now;
     // High for one cycle when a new result can be read.
     reg          strobe; initial strobe = 1'b0;
     // Published position.
     reg   [47:0] held; initial held = 48'd0;
-    // CRC that came with the published position.
+    // CRC received with the published position.
     reg    [4:0] held_crc; initial held_crc = 5'd0;
     // Width of the published position.
     reg    [5:0] held_width; initial held_width = 6'd0;
     // High if the published position came with F2.
     reg          held_f2; initial held_f2 = 1'b0;
-    // Width of the position before.
+    // Width of the previous position.
     reg    [5:0] earlier_width; initial earlier_width = 6'd0;
-    // High if the position before came with F2.
+    // High if the previous position came with F2.
     reg          earlier_f2; initial earlier_f2 = 1'b0;
-    // High if there was a valid position before.
+    // High if the previous position was valid.
     reg          earlier_valid; initial earlier_valid = 1'b0;
     // High from a good result until its frame is confirmed or withdrawn.
     reg          unconfirmed; initial unconfirmed = 1'b0;
-    // High while a position is published that can be used.
+    // High while a valid position is published.
     reg          valid; initial valid = 1'b0;
     // High if the last result brought a good position.
     reg          is_fresh; initial is_fresh = 1'b0;
     // Number of results, wrapping.
     reg   [15:0] count; initial count = 16'd0;
-    // Time stamp of the frame under way; where the position before can come back, its stamp from a result to the end of the frame.
+    // Time stamp of the frame under way; from a result to the end of the frame that of the previous position, if it can return.
     reg   [31:0] stamp_pending; initial stamp_pending = 32'd0;
     // Time stamp of the published position.
     reg   [31:0] stamp; initial stamp = 32'd0;
@@ -211,7 +211,7 @@ module s6_two_channel_snapshot (
             if (take_good) begin
                 unconfirmed <= 1'b1;
             end
-            // Between a result and the end of its frame stamp_pending keeps the time stamp of the position before.
+            // Between a result and the end of its frame stamp_pending stores the time stamp of the previous position.
             if (take_good) begin
                 stamp_pending <= stamp;
             end
@@ -224,8 +224,8 @@ module s6_two_channel_snapshot (
             if (unconfirmed & confirm) begin
                 age <= 16'd0;
             end
-            // The age of a position that may come back goes on until the new one is sure: a row of withdrawn ones must not look
-            // young.
+            // The age of a position that may return continues until the new one is confirmed, so that a series of withdrawn
+            // positions cannot make it look fresh.
             age_full <= &age;
         end
     end

@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Stream: the results of each trigger as one set in a buffer, for a host that wants all of them.
+// Stream: the results of each trigger as one set in a buffer, for a host that needs all of them.
 //
 // trigger, time stamp, count --> set under way --(all channels have their result, or the next trigger)--> closed set
 //                                                                                                            |
@@ -12,8 +12,8 @@
 //                                                                                                            |
 // host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
 //
-// docs/stream.md has the format of a set and of a frame. A set that is closed is taken whole in one cycle, then written in its own
-// time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
+// docs/stream.md has the format of a set and of a frame. A closed set is latched in one cycle, then written
+// to the buffer. If the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 module s6_two_channel_stream (
     // System clock.
     input  wire         clock,
@@ -27,19 +27,19 @@ module s6_two_channel_stream (
     input  wire  [31:0] timestamp,
     // A channel that took the trigger has no result yet.
     input  wire         owes,
-    // The result of a channel has been replaced by another one.
+    // A later result has replaced a channel's result.
     input  wire         replaced,
-    // Strobe: the channels keep what belongs to the set.
+    // Strobe: the channels latch their part of the set.
     output wire         take_set,
-    // Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
+    // Requested 8 bytes of the set: 0 = head, n + 1 = channel n.
     output wire   [3:0] block,
-    // Which of them.
+    // Requested byte of these.
     output wire   [2:0] byte_at,
-    // That byte of the channels.
+    // Requested byte from the channels.
     input  wire   [7:0] channel_byte,
-    // The word that is accessed is one of the stream's.
+    // The accessed word belongs to the stream.
     input  wire         selected,
-    // Which of its four words: control, state, data, clear.
+    // Word of the stream: control, state, data, clear.
     input  wire   [1:0] word,
     // Byte of the word, 0 = most significant.
     input  wire   [1:0] lane,
@@ -49,17 +49,17 @@ module s6_two_channel_stream (
     input  wire         write,
     // Low bits of the word to write.
     input  wire   [1:0] write_data,
-    // Byte that was read, from the cycle after access on; 0 if the word is not one of the stream's.
+    // Byte read, from the cycle after access on; 0 for words of other blocks.
     output wire   [7:0] read_byte,
-    // Frames are to be pushed.
+    // Push mode is on.
     output wire         push,
-    // A frame is being pushed: its first byte has been taken, its last one has not.
+    // A frame is being pushed: between its first and its last byte.
     output wire         in_frame,
     // push_byte is the next byte to push.
     output wire         push_valid,
     // The next byte.
     output wire   [7:0] push_byte,
-    // Strobe, with push_valid only: the byte is taken.
+    // Strobe, with push_valid only: the byte is accepted.
     input  wire         push_take
 );
     // First byte of a set of a trigger: its type and the number of channels.
@@ -69,7 +69,7 @@ module s6_two_channel_stream (
     wire         wanted;
     // High if the open set can be written: it fits into the buffer, and no result was replaced.
     wire         good;
-    // High for one cycle when a set is closed and taken for writing.
+    // High for one cycle when a set is closed and latched for writing.
     wire         take_now;
     // High for one cycle when a set is lost.
     wire         lost_now;
@@ -81,7 +81,7 @@ module s6_two_channel_stream (
     wire         bus_may;
     // High for one cycle when the host takes a byte from the data word.
     wire         bus_take;
-    // High if the next byte is discarded: after a clear, or the rest of a frame that was partly read.
+    // High if the next byte is discarded: after a clear, or in the rest of a frame that was partly read.
     wire         skip;
     // High for one cycle when a byte leaves the buffer.
     wire         take;
@@ -100,7 +100,7 @@ module s6_two_channel_stream (
     reg          push_on; initial push_on = 1'b0;
     // High from a trigger until its set is closed or counted as lost.
     reg          open; initial open = 1'b0;
-    // High in the first cycle after a trigger: the trigger count is not up to date before.
+    // High in the first cycle after a trigger, before the trigger count is up to date.
     reg          first; initial first = 1'b0;
     // High if a result of the open set has been replaced by another; cleared by a trigger.
     reg          spoilt; initial spoilt = 1'b0;
@@ -120,12 +120,12 @@ module s6_two_channel_stream (
     // Sets lost since the host cleared the count, up to 65535.
     reg   [15:0] lost_all; initial lost_all = 16'd0;
     wire         lost_all_reset;
-    // Byte of the head that is asked for; 0 while another block is.
+    // Requested byte of the head; 0 for other blocks.
     reg    [7:0] head_byte; initial head_byte = 8'd0;
     wire         head_byte_reset;
-    // Low three bytes of the state word, as of the read of its first byte.
+    // Low three bytes of the state word, latched by the read of its first byte.
     reg   [23:0] state_held; initial state_held = 24'd0;
-    // Byte that the host reads; 0 if the word is not one of the stream's.
+    // Byte for the host; 0 for words of other blocks.
     reg    [7:0] byte_read; initial byte_read = 8'd0;
     wire         byte_read_reset;
     // High from a clear by the host until the buffer is empty: its bytes are discarded.
@@ -168,11 +168,11 @@ module s6_two_channel_stream (
     assign bus_take = reads & (word == 2'd2) & bus_may;
     assign byte_read_reset = access & !reads;
     assign read_byte = byte_read;
-    // The other end. A frame goes one way from its first byte to its last.
+    // The read side. A frame leaves entirely through one path, register or push.
     assign push = push_on;
     assign in_frame = pushing;
     assign push_valid = buffer_ready & (pushing | (push_on & !mid_frame & !flush));
-    // What a clear throws away, or is left of a frame that the host read half of.
+    // Discards the bytes cleared by the host, or the rest of a frame that it read partly.
     assign skip = buffer_ready & !pushing & (flush | (push_on & mid_frame));
     assign take = bus_take | push_take | skip;
     assign more = |push_byte;
@@ -203,7 +203,7 @@ module s6_two_channel_stream (
             if (trigger & collect) begin
                 open <= 1'b1;
             end
-            // The set under way. The number of its trigger is there a cycle after the trigger.
+            // Closes the set under way. The number of its trigger is valid a cycle after the trigger.
             first <= trigger;
             if (first) begin
                 sequence_value <= trigger_count[15:0];
@@ -232,7 +232,7 @@ module s6_two_channel_stream (
             if (push_take) begin
                 pushing <= more;
             end
-            // An upset: nothing is left of a frame, and answers would wait for its end for ever.
+            // After an upset: no byte of the frame is left, and answers would wait for its end for ever.
             if (pushing & !(|buffer_waiting_bytes)) begin
                 pushing <= 1'b0;
             end

@@ -4,21 +4,21 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Transaction: the order of one frame, all its time-outs, and what went wrong.
+// Transaction: the sequence of a frame, all its time-outs, and its faults.
 //
 // wire      NotReady Ready FirstLow Frame ................ Tail Recovery NotReady Ready
 // endat_clk ~~~~~~~~~~~~~~\________/~\_/~\_ ... _/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
 // data      \_____________? command    0 S F1 .. CRC ~~~~~~~~~~~~~~~\_________________
 // done      _______________________________________________/\_________________________
 //
-// With a supplement the clock stays LOW after the last CRC bit (Park), and Frame goes on until its cells are over.
+// With a supplement the clock stays LOW after the last CRC bit (Park), and Frame continues until its cells are over.
 // A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The
-// frame at the full clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by own, for a
-// request that needs the line for itself. What becomes of the first is published; what becomes of either is told with over.
+// frame at the full clock follows automatically, and its result is the trigger's. A trigger begins a frame, or own does, for a
+// request with a separate frame. The result of a triggered frame is published; over reports the outcome of every frame.
 //
-// Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
-// off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
-// between two frames means that something was plugged: the delay is measured again.
+// Every wait has a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
+// off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. If DATA was HIGH
+// between two frames, an encoder may have been plugged in: the delay is measured again.
 //
 // Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
 module s6_two_channel_transaction (
@@ -28,7 +28,7 @@ module s6_two_channel_transaction (
     input  wire         reset,
     // One-cycle strobe each microsecond.
     input  wire         tick_us,
-    // One-cycle strobe: take a position.
+    // One-cycle strobe: read a position.
     input  wire         trigger,
     // Strobe: measure the propagation delay again with the next frame.
     input  wire         calibrate,
@@ -42,19 +42,19 @@ module s6_two_channel_transaction (
     input  wire         center,
     // The start bit may come now.
     input  wire         hunting,
-    // Strobe one cycle after sample: it was high, but its edge is outside the window.
+    // Strobe one cycle after sample: the sample was high, but its edge is outside the window.
     input  wire         start_refused,
-    // The start bit has been taken.
+    // The start bit has been received.
     input  wire         started,
     // All clock pulses have been sent, or are on their way to the pin.
     input  wire         all_sent,
-    // Strobe: the last one is counted in this cycle.
+    // Strobe: the last pulse is counted in this cycle.
     input  wire         last_sent,
-    // The cell of each pulse that was sent has ended.
+    // The cell of each sent pulse has ended.
     input  wire         none_under_way,
     // The counts of cells and pulses agree that this cell is the last one.
     input  wire         all_used,
-    // They agree that there is none left.
+    // The counts of cells and pulses agree that no cell is left.
     input  wire         all_ended,
     // Strobe: payload, error bits, CRC and verdict of the answer without additional data are valid.
     input  wire         done,
@@ -64,11 +64,11 @@ module s6_two_channel_transaction (
     input  wire         f1,
     // Error bit 2, low = alarm; high in frames without it.
     input  wire         f2,
-    // The CRC of the bits as they came is the one received.
+    // The CRC of the bits as received equals the received CRC.
     input  wire         crc_ok,
-    // The word as it is stored now fits the received CRC; without guards as crc_ok.
+    // The stored word matches the received CRC; without guards equal to crc_ok.
     input  wire         stored_ok,
-    // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
+    // Extension of the first low phase beyond half a period: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
     // Longest wait for the start bit after the turnaround, in microseconds.
     input  wire  [11:0] start_timeout_us,
@@ -76,18 +76,17 @@ module s6_two_channel_transaction (
     input  wire  [12:0] recovery_limit_cycles,
     // One-cycle strobe: a frame begins; the first falling clock edge comes at the end of this cycle.
     output wire         start,
-    // The frame is given up: driver off at once, nothing is expected any more.
+    // The frame is aborted: driver off at once, the receiver expects nothing more.
     output wire         aborts,
     // The frame measures the propagation delay: cells before the start bit are counted by clock edges.
     output wire         acquire,
     // One-cycle strobe: the supplement begins.
     output wire         start_supplement,
-    // A frame is under way on the wire; low between frames, where everything but the delay is forgotten.
+    // A frame is under way on the wire; between frames all timing state except the delay is cleared.
     output wire         run,
-    // The clock waits: when the cells of all pulses that were sent have ended, a new burst begins.
+    // The clock stops: when the cells of all sent pulses have ended, a new burst begins.
     output wire         drain,
-    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another
-    // clock.
+    // One-cycle strobe: the last cell has begun. The next sample comes half a period later, possibly of another clock.
     output wire         last_cell,
     // This frame runs at the calibration clock.
     output wire         slow,
@@ -95,25 +94,25 @@ module s6_two_channel_transaction (
     output wire         hold_low,
     // Keeps the clock high: no frame, or all its edges have been sent.
     output wire         stop,
-    // A trigger would not be taken.
+    // A trigger would be lost.
     output wire         busy,
     // Strobe: result of a trigger, cause and flags are valid.
     output wire         publish,
     // With publish: the position is good.
     output wire         good,
-    // Strobe: something was wrong after the result was published; cause and flags replace those of the result.
+    // Strobe: a fault was found after the result was published; cause and flags replace those of the result.
     output wire         late_fault,
-    // Strobe: the published position is not good after all; the one before comes back.
+    // Strobe: the published position is not good after all; the previous one returns.
     output wire         withdraw,
-    // Strobe: the published position stands, nothing can withdraw it any more.
+    // Strobe: the published position is final.
     output wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     output wire   [4:0] cause_told,
     // Raw flags, one bit for each fault; bits as in the register map.
     output wire  [19:0] flags_told,
-    // No frame is under way, and all that there is to tell of the last one has been told.
+    // No frame is under way, and the last one has been reported completely.
     output wire         is_at_rest,
-    // Strobe: a trigger has been lost.
+    // Strobe: a trigger is lost.
     output wire         displaced,
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles
@@ -133,12 +132,12 @@ module s6_two_channel_transaction (
     localparam  [19:0] NOT_FALLING = 20'd64;
     localparam  [19:0] TAIL_LOW = 20'h200;
     localparam  [19:0] UPSET = 20'h80000;
-    // What the wire is doing.
+    // Phase of the wire.
     localparam   [2:0] PHASE_NOT_READY = 3'd0; // Idle, but data has not yet been low for tR.
     localparam   [2:0] PHASE_READY = 3'd1; // Idle and ready for a trigger.
     localparam   [2:0] PHASE_FIRST_LOW = 3'd2; // First low phase, held for tST.
     localparam   [2:0] PHASE_FRAME = 3'd3; // Mode command, turnaround, waiting for the start bit, answer; then the supplement.
-    localparam   [2:0] PHASE_TAIL = 3'd4; // The last CRC bit has been taken; the cell after it must be high.
+    localparam   [2:0] PHASE_TAIL = 3'd4; // The last CRC bit has been sampled; the cell after it must be high.
     localparam   [2:0] PHASE_RECOVERY = 3'd5; // Clock and data high: recovery time tm.
     localparam   [2:0] PHASE_ABORT = 3'd6; // Quiet after an aborted frame.
     localparam   [2:0] PHASE_PARK = 3'd7; // Clock LOW between answer and supplement.
@@ -158,7 +157,7 @@ module s6_two_channel_transaction (
     reg          accept;
     // High if the frame, or the wait for one, ends with the fault in found.
     reg          give_up;
-    // High if a trigger in this cycle is not lost: it begins a frame, or reports at once why not.
+    // High if a trigger in this cycle is not lost: it begins a frame, or reports a fault at once.
     reg          idle;
     // High if a trigger, an owed position or a request asks for a frame.
     wire         wanted;
@@ -166,9 +165,9 @@ module s6_two_channel_transaction (
     wire         triggered;
     // High for one cycle: this trigger has a result without a frame.
     reg          refuse;
-    // High for one cycle: the frame has ended without being given up.
+    // High for one cycle: the frame has ended without an abort.
     reg          normal_end;
-    // High if the start bit has come and all pulses of the frame are sent; low before a supplement.
+    // High if the start bit has been received and all pulses of the frame are sent; low before a supplement.
     wire         sent;
     // Flags of the faults found in this cycle.
     reg   [19:0] found;
@@ -184,7 +183,7 @@ module s6_two_channel_transaction (
     wire         owed;
     // High for one cycle when the bit after the answer shows that the answer has the right length.
     reg          proof;
-    // High if the delay must be measured again: on request, after a plug or after an upset.
+    // High if the delay must be measured again: on request, after an encoder change or after an upset.
     wire         afresh;
     wire         last_edge_all_sent;
     wire         last_edge_holds;
@@ -216,7 +215,7 @@ module s6_two_channel_transaction (
     reg          was_running; initial was_running = 1'b0;
     // High if the first low phase of a frame is longer than the others.
     reg          extra; initial extra = 1'b0;
-    // High while CLOCK stays HIGH: no frame runs, or the frame is given up, or the running clock is left.
+    // High while CLOCK stays HIGH: no frame runs, or the frame is aborted, or the running clock stops.
     reg          stopping; initial stopping = 1'b1;
     // Set when the delay is measured; cleared by an abort, two wrong CRCs in a row, afresh or a fixed delay.
     reg          is_calibrated; initial is_calibrated = 1'b0;
@@ -260,7 +259,7 @@ module s6_two_channel_transaction (
     // High from the end of a measuring frame until the frame begins that brings the trigger's position.
     reg          once_more; initial once_more = 1'b0;
     reg          once_more_next;
-    // High from the start of a frame until it ends or is given up.
+    // High from the start of a frame until it ends or is aborted.
     reg          under_way; initial under_way = 1'b0;
     reg          under_way_next;
 
@@ -317,17 +316,17 @@ module s6_two_channel_transaction (
     );
 
     assign triggered = trigger;
-    // The position that a measuring frame has made possible.
+    // The position that follows a measuring frame.
     assign owed = once_more & owing;
     assign wanted = triggered | owed;
-    // The timer of a wait that was longer than a frame goes on for a cycle after it.
+    // The timer of a wait longer than a frame still counts for one cycle after it.
     assign endless = |(timer & FRAME_US);
-    // Where the recovery time begins.
+    // Finds the start of the recovery time.
     assign in_tail = phase == PHASE_TAIL;
     assign in_recovery = phase == PHASE_RECOVERY;
     assign last_cell = in_tail & was_center;
     assign known = is_calibrated;
-    // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
+    // A fixed delay is not measured: tracking must measure first.
     assign afresh = calibrate | plugged;
 
     always @* begin
@@ -354,11 +353,11 @@ module s6_two_channel_transaction (
         idle = 1'b0;
         answer_taken = 1'b0;
         found = 20'd0;
-        // The order of a frame.
+        // Sequence of a frame.
         running = 1'b0;
         case (phase)
             PHASE_NOT_READY: begin
-                // DATA is not LOW yet, or not for long enough.
+                // Waits until DATA has been LOW for long enough.
                 limit = READY_LOW_CYCLES - 16'd1;
                 timer_clear = level;
                 idle = level;
@@ -367,7 +366,7 @@ module s6_two_channel_transaction (
                 end
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
-                    // Longer than an edge rings.
+                    // Longer than the ringing of an edge.
                     plugged_next = high_at_tick & tick_us;
                     if (triggered | owed) begin
                         found = DATA_NOT_LOW;
@@ -376,9 +375,9 @@ module s6_two_channel_transaction (
                 end
             end
             PHASE_READY: begin
-                // A frame may begin.
+                // Waits for a trigger.
                 timer_clear = 1'b1;
-                // A trigger just behind one that was refused is lost: the result that is being told would be taken for its own.
+                // Drop a trigger while the refusal of the previous one is being published; otherwise it would get that result.
                 idle = !verdict_is_telling;
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
@@ -414,12 +413,12 @@ module s6_two_channel_transaction (
                 running = 1'b1;
                 in_us = 1'b1;
                 timer_clear = (hunting ^ was_hunting) | finished;
-                // A receiver that has lost its place. The timer of the hunt is still compared in the cycle after it.
+                // The receiver has lost its place. The timer of the hunt is still compared in the cycle after it.
                 if (endless & !hunting) begin
                     found = TAIL_LOW;
                     give_up = 1'b1;
                 end
-                // In the first cycle of the hunt the timer is still that of what was before.
+                // In the first cycle of the hunt the timer still has the value of the previous wait.
                 if (timer_hit & hunting & was_hunting) begin
                     found = NO_START_BIT;
                     give_up = 1'b1;
@@ -461,10 +460,10 @@ module s6_two_channel_transaction (
                     found = TAIL_LOW;
                     give_up = 1'b1;
                 end
-                // A cycle late, for the middle may come before the last bit has been worked upon.
+                // One cycle late, because the middle may come before the last bit has been processed.
                 if (was_center) begin
                     phase_next = PHASE_RECOVERY;
-                    // From here on the full clock's times again: a short tm ends before half a slow period does.
+                    // The times of the full clock apply from here on: a short tm ends before half a slow period does.
                     acquiring_next = 1'b0;
                     is_slow_next = 1'b0;
                 end
@@ -486,19 +485,19 @@ module s6_two_channel_transaction (
                     found = NOT_FALLING;
                     give_up = 1'b1;
                 end
-                // Each cell had its pulse, but for one whose count was upset.
+                // Each cell had its pulse, unless a count was upset.
                 if (sample & !tail_sampled & !all_used) begin
                     found = UPSET;
                     give_up = 1'b1;
                 end
-                // The encoder still sends, or has stopped early: its frame has another length than ours.
+                // The encoder is still sending, or has stopped early: its frame has another length than configured.
                 if (sample & !tail_sampled & !level) begin
                     found = TAIL_LOW;
                     give_up = 1'b1;
                 end
             end
             PHASE_ABORT: begin
-                // The line is left alone; then it is probed, where that is known.
+                // Keeps the line idle, then probes it if the diagnosis is present.
                 in_us = 1'b1;
                 limit = ABORT_US;
                 if (timer_hit) begin
@@ -518,31 +517,31 @@ module s6_two_channel_transaction (
             answered_next = 1'b0;
             under_way_next = 1'b0;
         end
-        // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
+        // The abort takes effect one cycle later, which keeps the decision out of the longest paths.
         if (aborts) begin
             phase_next = PHASE_ABORT;
             timer_clear = 1'b1;
             accept = 1'b0;
             refuse = 1'b0;
-            // A trigger just behind the one that was refused is lost, not forgotten.
+            // A trigger directly after the refused one counts as lost.
             idle = 1'b0;
-            // DATA LOW behind a frame of another length does not end it once more.
+            // DATA LOW after a frame of another length does not end the frame again.
             normal_end = 1'b0;
             answered_next = 1'b0;
             is_calibrated_next = 1'b0;
             under_way_next = 1'b0;
         end
-        // Whether the propagation delay is known.
-        // The mean over several frames, if it is taken; the last of them makes the delay known.
+        // Tracks whether the propagation delay is known.
+        // With alignment, the mean over several frames; the last of them makes the delay known.
         if (verdict_is_received & measuring) begin
             is_calibrated_next = 1'b1;
         end
-        // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is
-        // told to.
+        // A delay that is wrong by whole periods is not detected at the start edge. A continuous clock finds each start bit anew,
+        // and ends as configured.
         if (verdict_is_doubtful) begin
             is_calibrated_next = 1'b0;
         end
-        // What else becomes of that frame is the trigger's result, not something that comes behind it.
+        // Any other outcome of that frame is the trigger's result, not a late fault.
         if (verdict_once_more) begin
             once_more_next = 1'b1;
             answered_next = 1'b0;
@@ -550,11 +549,11 @@ module s6_two_channel_transaction (
         if (accept | refuse | aborts | !owing) begin
             once_more_next = 1'b0;
         end
-        // What a frame begins with.
+        // Start values of a frame.
         if (accept) begin
             is_slow_next = !known;
         end
-        // A cycle later: the first clock edge has not come by then.
+        // One cycle later is early enough: the first clock edge has not come yet.
         if (starting) begin
             measuring_next = is_slow;
             under_way_next = 1'b1;
@@ -565,25 +564,25 @@ module s6_two_channel_transaction (
         if (afresh) begin
             is_calibrated_next = 1'b0;
         end
-        // A reset may have come in the middle of a frame. After power-up nobody has begun one.
+        // A reset may have come in the middle of a frame. After power-up no frame has begun.
         if (reset) begin
             phase_next = PHASE_ABORT;
         end
     end
 
-    // Of a frame that measured nothing has been published.
+    // A measuring frame has published nothing.
     assign verdict_is_late = answered & !verdict_once_more;
-    // Triggers that are lost, and the result that is owed.
+    // Lost triggers, and the owed result.
     assign lost = trigger & ((!accept & !idle) | owing);
     assign run = was_running;
     assign start = starting;
-    // Taking the start bit ends its cell; started comes when the comparison knows that.
+    // Receiving the start bit ends its cell; started is set by the time of the comparison.
     assign sent = last_edge_all_sent & started;
     assign hold_low = hold;
     assign drain = last_edge_stalled;
-    // The high phase of the last pulse may last two cycles only.
+    // The high phase of the last pulse may be only two cycles long.
     assign stop = stopping | sent;
-    // What is told.
+    // Outputs.
     assign acquire = acquiring;
     assign slow = is_slow;
     assign busy = !idle | once_more;
@@ -637,8 +636,8 @@ module s6_two_channel_transaction (
                 timer <= 16'd3;
             end
             timer_limit <= limit;
-            // Not less: a timer that was upset past its limit ends, too. While cleared is HIGH the timer is still that of the span
-            // before.
+            // Greater or equal: a timer upset past its limit ends, too. While cleared is HIGH the timer still has the value of the
+            // previous span.
             timer_hit <= (timer >= timer_limit) & !cleared;
             cleared <= timer_clear | rise_back;
             if (timer_clear) begin
@@ -647,7 +646,7 @@ module s6_two_channel_transaction (
             timer_step <= !in_us | tick_us;
             hold <= (phase == PHASE_FIRST_LOW) | last_edge_holds;
             starting <= accept;
-            // The clock: when it runs, stands LOW, and ends.
+            // The clock: runs, is held LOW, ends.
             was_running <= running;
             extra <= |first_low_extra_cycles;
             stopping <= !running | aborts;
@@ -658,14 +657,14 @@ module s6_two_channel_transaction (
             recovery <= recovery_next;
             supplement_starts <= supplement_starts_next;
             answered <= answered_next;
-            // Time-outs, each counted from the beginning of its span.
+            // Time-outs, each counted from the start of its span.
             was_hunting <= hunting;
             was_center <= center;
             plugged <= plugged_next;
             // The timer starts one cycle after the strobe that begins a span, with the cycles that have passed by then. Spans that
             // start at 0 and count cycles have a limit that is one less.
             is_back <= rise_back & !aborts;
-            // Whether the delay has to be measured again.
+            // Conditions for a new measurement of the delay.
             high_at_tick <= high_at_tick & level;
             if (tick_us) begin
                 high_at_tick <= level;
@@ -724,7 +723,7 @@ module s6_two_channel_transaction (
         f_owed <= !reset & (f_taken | (f_owed & !publish));
     end
 `ifndef FORMAL_ANY_STATE
-    // requests have frames of their own, and a clock that goes on has results without triggers
+    // requests have separate frames, and a continuous clock has results without triggers
     always @* if (!HAS_ALL & !HAS_CONTINUOUS) begin
         `FORMAL_LABEL(one_result_per_trigger) assert (!f_taken | !f_owed | publish);
         `FORMAL_LABEL(one_result_per_trigger_asked) assert (!publish | f_owed);
@@ -779,7 +778,7 @@ module s6_two_channel_transaction (
             default: f_rank = 3'd0;
         endcase
     endfunction
-    // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
+    // a supplement, a continuous clock and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
     wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
     wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
     wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts & !cleared & !is_back & !starting;

@@ -4,15 +4,15 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Triggers: three sources, one strobe for all channels; a card whose channels have triggers of their own takes them from the same
-// hits (channel_trigger).
+// Triggers: three sources, one strobe for all channels. A card with separate channel triggers derives them from the same hits
+// (channel_trigger).
 //
 // trigger pin -> synchroniser -> rising edge --+
 // timer, every period_cycles ------------------+-- enabled? --> register --> trigger, trigger_count
 // register strobe -----------------------------+
 //
-// Sources that coincide make one trigger. The strobe begins with the third clock edge that sees the pin high, and with the
-// first that sees the register strobe.
+// Sources that coincide make one trigger. The strobe begins with the third clock edge that samples the pin high, and with the
+// first that samples the register strobe.
 module s6_two_channel_trigger (
     // System clock.
     input  wire         clock,
@@ -82,7 +82,7 @@ module s6_two_channel_trigger (
             sync2 <= sync1;
             timer_hit_low <= timer[11:0] == period_cycles[11:0];
             timer <= timer + 24'd1;
-            // Restarts while disabled: the first period is a whole one.
+            // Restarts while disabled, so that the first period is a whole one.
             if (timer_hit | !sources[1]) begin
                 timer <= TIMER_FIRST;
                 timer_hit_low <= 1'b0;

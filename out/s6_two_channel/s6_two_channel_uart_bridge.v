@@ -9,15 +9,15 @@
 // write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
 // read    02 len  a3 a2 a1 a0                                        04: all words from one address
 // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
-// Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped after the
-// time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not
-// move on ends after it, too.
+// Addresses count words; every field is sent most significant byte first. The bridge drops a command that stops half way after the
+// time-out. After a byte with a framing error within a command it ignores everything until then. An answer that stalls ends after
+// the time-out, too.
 //
-// Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
+// Between answers it pushes the frames of a Stream, each without interruption; an answer then begins with 0xFF.
 //
-// With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
-// A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that
-// byte waits, the second one comes later than any turn ends.
+// The time-out also stops reading: a late byte would meet the next command, and would be written if that one writes.
+// A word is written within one turn of the configuration ring, which may take longer than the first byte of the next word. That
+// byte waits; the second one arrives after the end of any turn.
 //
 // A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
 //
@@ -33,36 +33,35 @@ module s6_two_channel_uart_bridge (
     input  wire         rx,
     // Serial line to the host, from a register.
     output wire         tx,
-    // Word address; what stood there in the cycle before access counts until done.
+    // Word address; the value in the cycle before access applies until done.
     output wire  [10:0] word_address,
-    // The front's address fits word_address; otherwise a read gives 0 and a write does nothing. It counts like the address.
+    // The front's address fits word_address; otherwise a read gives 0 and a write has no effect. Timing as for the address.
     output wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     output wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does
-    // nothing.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Ignored before done of the last access.
     output wire         access,
     // With access: write a word; low = read a byte.
     output wire         write,
-    // Word to write; moves up by a byte in each cycle with take_byte.
+    // Word to write; shifts up by a byte in each cycle with take_byte.
     output wire  [31:0] write_data,
     // The host is reading: results must not change.
     output wire         reading,
-    // A byte of the configuration word passes the head, most significant first: in a write that of write_data replaces it.
+    // A byte of the configuration word passes the head, most significant first; a write replaces it by that of write_data.
     input  wire         take_byte,
     // Byte that was read, from done to the next access.
     input  wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
     input  wire         done,
-    // Frames are to be pushed.
+    // Push mode is on.
     input  wire         push,
-    // A frame is being pushed: its first byte has been taken, its last one has not.
+    // A frame is being pushed: between its first and its last byte.
     input  wire         in_frame,
     // push_byte is the next byte to push.
     input  wire         push_valid,
     // The next byte.
     input  wire   [7:0] push_byte,
-    // Strobe, with push_valid only: the byte is taken.
+    // Strobe, with push_valid only: the byte is accepted.
     output wire         push_take
 );
     // Longest pause within a command, in microseconds.
@@ -72,15 +71,15 @@ module s6_two_channel_uart_bridge (
     // write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
     // read    02 len  a3 a2 a1 a0                                        04: all words from one address
     // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
-    // Addresses count words; every field is sent most significant byte first. A command that stops half way is dropped after the
-    // time-out; a byte with a framing error within a command makes the bridge ignore everything until then. An answer that does not
-    // move on ends after it, too.
+    // Addresses count words; every field is sent most significant byte first. The bridge drops a command that stops half way after
+    // the time-out. After a byte with a framing error within a command it ignores everything until then. An answer that stalls ends
+    // after the time-out, too.
     //
-    // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
+    // Between answers it pushes the frames of a Stream, each without interruption; an answer then begins with 0xFF.
     //
-    // With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
-    // A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word;
-    // that byte waits, the second one comes later than any turn ends.
+    // The time-out also stops reading: a late byte would meet the next command, and would be written if that one writes.
+    // A word is written within one turn of the configuration ring, which may take longer than the first byte of the next word. That
+    // byte waits; the second one arrives after the end of any turn.
     //
     // A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
     //
@@ -89,16 +88,16 @@ module s6_two_channel_uart_bridge (
     localparam   [2:0] BRIDGE_STATE_LENGTH = 3'd1; // Number of words.
     localparam   [2:0] BRIDGE_STATE_ADDRESS = 3'd2; // Word address.
     localparam   [2:0] BRIDGE_STATE_WRITE = 3'd3; // Data from the host.
-    localparam   [2:0] BRIDGE_STATE_READ = 3'd4; // Data to the host; bytes from it are dropped.
-    localparam   [2:0] BRIDGE_STATE_DISCARD = 3'd5; // Nothing, until the time-out.
+    localparam   [2:0] BRIDGE_STATE_READ = 3'd4; // Data to the host; received bytes are dropped.
+    localparam   [2:0] BRIDGE_STATE_DISCARD = 3'd5; // Bytes are ignored until the time-out.
 
-    // High if the next byte on the line is one of the stream, not of an answer.
+    // High if the next byte on the line belongs to the stream, not to an answer.
     wire         from_stream;
     // High for one cycle when a byte of an answer is handed to the transmitter.
     wire         answer_sent;
     // High at the last byte of an address or word.
     wire         last_lane;
-    // High for one cycle when a byte of an address or word has come or gone.
+    // High for one cycle when a byte of an address or word has been received or sent.
     reg          next_lane;
     // Address of the following word, with carry.
     wire  [11:0] next_address;
@@ -121,25 +120,25 @@ module s6_two_channel_uart_bridge (
     // High if the command writes.
     reg          writing; initial writing = 1'b0;
     reg          writing_next;
-    // Words of the command that are left, with the one under way.
+    // Remaining words of the command, including the one under way.
     reg    [7:0] words_left; initial words_left = 8'd0;
     reg    [7:0] words_left_next;
-    // Word address; moves on after each word unless fixed.
+    // Word address; advances after each word unless fixed.
     reg   [10:0] address; initial address = 11'd0;
     reg   [10:0] address_next;
-    // High if the address is beyond the map: reads give 0, writes do nothing.
+    // High if the address is beyond the map: reads give 0, writes have no effect.
     reg          out_of_range; initial out_of_range = 1'b0;
     reg          out_of_range_next;
     // Byte of the field under way: 0 = most significant.
     reg    [1:0] byte_lane; initial byte_lane = 2'd0;
     reg    [1:0] byte_lane_next;
-    // Word to write; moves up by a byte as bytes come in or are taken.
+    // Word to write; shifts up by a byte as bytes arrive or are written.
     reg   [31:0] data; initial data = 32'd0;
     // Last byte received for a write, until it moves into data.
     reg    [7:0] next_byte; initial next_byte = 8'd0;
     // High while next_byte waits.
     reg          has_byte; initial has_byte = 1'b0;
-    // High from the start of a write until it has been carried out.
+    // High from the start of a write until it is complete.
     reg          write_busy; initial write_busy = 1'b0;
     // High in the cycle after a byte of an answer was handed to the transmitter.
     reg          sent; initial sent = 1'b0;
@@ -150,7 +149,7 @@ module s6_two_channel_uart_bridge (
     reg          last_word; initial last_word = 1'b0;
     // High if no word is left.
     reg          no_word; initial no_word = 1'b0;
-    // High for one cycle when the address moves on.
+    // High for one cycle when the address advances.
     reg          step_address; initial step_address = 1'b0;
     reg          step_address_next;
     // High for one cycle before access_strobe.
@@ -164,7 +163,7 @@ module s6_two_channel_uart_bridge (
     reg   [16:0] idle_us; initial idle_us = 17'd0;
     // High for one cycle when the time-out has ended the command.
     reg          expired; initial expired = 1'b0;
-    // High if the time-out starts again: a byte came or went, or no command is under way.
+    // High if the time-out restarts: a byte was received or sent, or no command is under way.
     reg          stop_timer; initial stop_timer = 1'b0;
     reg          stop_timer_next;
     // High if the next answer begins with the mark 0xFF: pushing is on, or was since the last answer.
@@ -191,7 +190,7 @@ module s6_two_channel_uart_bridge (
         .tx(tx)
     );
 
-    // A frame that has begun goes first; none begins while an answer is due.
+    // A frame that has begun is finished first; none begins while an answer is due.
     assign from_stream = in_frame | (state != BRIDGE_STATE_READ);
 
     always @* begin
@@ -208,7 +207,7 @@ module s6_two_channel_uart_bridge (
 
     assign push_take = transmitter_accept & from_stream;
     assign answer_sent = transmitter_accept & !from_stream & !marker;
-    // What a cycle begins with.
+    // Defaults of a cycle.
     assign last_lane = &byte_lane;
     assign high_bits = |receiver_data;
     assign next_address = {1'b0, address} + 12'd1;
@@ -226,7 +225,7 @@ module s6_two_channel_uart_bridge (
         if (transmitter_accept & !from_stream) begin
             marker_next = 1'b0;
         end
-        // The first answer after the last frame has its mark, too: so the host knows it from a frame.
+        // The first answer after the last frame has the mark, too, so that the host can distinguish it from a frame.
         if (push) begin
             marked_next = 1'b1;
         end
@@ -235,7 +234,7 @@ module s6_two_channel_uart_bridge (
         access_due_next = 1'b0;
         next_lane = 1'b0;
         stop_timer_next = receiver_strobe;
-        // The order of a command.
+        // Steps of a command.
         case (state)
             BRIDGE_STATE_COMMAND: begin
                 stop_timer_next = 1'b1;
@@ -294,7 +293,7 @@ module s6_two_channel_uart_bridge (
                 end
             end
             BRIDGE_STATE_READ: begin
-                // Without the time-out an answer would wait for ever for a byte that an upset has lost.
+                // Without the time-out an answer would wait forever for a byte that an upset has lost.
                 stop_timer_next = transmitter_accept;
                 if (sent) begin
                     next_lane = 1'b1;
@@ -313,7 +312,7 @@ module s6_two_channel_uart_bridge (
                 state_next = BRIDGE_STATE_DISCARD;
             end
         endcase
-        // Bytes and words.
+        // Counts bytes and words.
         if (next_lane) begin
             byte_lane_next = byte_lane + 2'd1;
         end
@@ -326,7 +325,7 @@ module s6_two_channel_uart_bridge (
                 end
             end
         end
-        // The address. That of a written word stays until its access has ended.
+        // Advances the address, except during the access of a written word.
         // A written word keeps its address until its access has ended.
         if (done & writing) begin
             step_address_next = !fixed;
@@ -364,7 +363,7 @@ module s6_two_channel_uart_bridge (
     end
 
     assign data_moves = has_byte & !write_busy;
-    // The access.
+    // Starts the access.
     assign word_address = address;
     assign in_range = !out_of_range;
     assign lane = byte_lane;
@@ -417,7 +416,7 @@ module s6_two_channel_uart_bridge (
                 next_byte <= receiver_data;
                 has_byte <= 1'b1;
             end
-            // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
+            // Shifts the word that is being written, and keeps its bytes separate from those of the next word.
             if (access_strobe & writing) begin
                 write_busy <= 1'b1;
             end
@@ -426,17 +425,17 @@ module s6_two_channel_uart_bridge (
             end
             sent <= answer_sent;
             word_end <= word_end_next;
-            // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
+            // Bytes are tens of cycles apart, so every decision may take a few cycles, which keeps the paths short.
             last_word <= words_left == 8'd1;
             no_word <= !(|words_left);
             step_address <= step_address_next;
             access_due <= access_due_next;
             access_strobe <= access_due;
-            // What ends a command before its time.
+            // Ends a command early.
             if (done & (state == BRIDGE_STATE_READ)) begin
                 byte_ready <= 1'b1;
             end
-            // What is left of an answer that was given up is not the beginning of the next one.
+            // The rest of an aborted answer is not part of the next one.
             if (answer_sent | (state != BRIDGE_STATE_READ)) begin
                 byte_ready <= 1'b0;
             end

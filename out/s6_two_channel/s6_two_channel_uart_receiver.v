@@ -50,7 +50,7 @@ module s6_two_channel_uart_receiver (
     reg          sample; initial sample = 1'b0;
     // Bits received so far, the last one at the top; a marker bit falls out with the stop bit.
     reg    [9:0] shift; initial shift = 10'h200;
-    // High for one cycle when a whole byte has come.
+    // High for one cycle when a whole byte has been received.
     reg          good; initial good = 1'b0;
     // High for one cycle when a byte ended with a LOW stop bit.
     reg          bad; initial bad = 1'b0;
@@ -102,7 +102,7 @@ module s6_two_channel_uart_receiver (
             if (!active) begin
                 shift <= MARKER;
                 sample <= 1'b0;
-                // An edge, not a level: a line held low is not a row of start bits.
+                // An edge, not a level: a line held low is not a series of start bits.
                 active <= previous & !sync1;
                 in_start_bit <= 1'b1;
             end

@@ -10,11 +10,11 @@ module s6_two_channel_uart_transmitter (
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // Byte to send; held while valid is high and accept has not come.
+    // Byte to send; held while valid is high until accept.
     input  wire   [7:0] data,
-    // data shall be sent.
+    // data is to be sent.
     input  wire         valid,
-    // High for one cycle: data has been taken.
+    // High for one cycle: data has been accepted.
     output wire         accept,
     // Serial line, idle HIGH, from a register.
     output wire         tx
@@ -37,7 +37,7 @@ module s6_two_channel_uart_transmitter (
     // High if only the stop bit is left.
     reg          empty; initial empty = 1'b1;
 
-    // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
+    // Bits begin on a fixed grid, so that a byte is loaded in a step of the shift register.
     assign hit = count == LAST_COUNT;
     assign take = bit_end & empty & valid;
     assign accept = take;
@@ -61,7 +61,7 @@ module s6_two_channel_uart_transmitter (
             if (take) begin
                 shift <= {1'b0, data, 1'b0} | STOP_BIT;
             end
-            // Only the stop bit is left, and it stays until there is something to send.
+            // Only the stop bit is left, and it stays until the next byte.
             empty <= !(|shift[9:1]);
         end
     end

@@ -4,67 +4,68 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Verdict: what has happened to a frame is registered, then told with its primary cause.
+// Verdict: registers the faults of a frame, then reports them with the primary cause.
 //
 // answer_taken, give_up ...  ____/~~\_______________
-// taken, gave_up             _______/~~\____________    the flags are put together
-// prove                      ___________/~~\________    the bit that follows the answer fits, too
-// decides                    ______________/~~\_____    a cycle later: nothing that is sampled now is in this path
+// taken, gave_up             _______/~~\____________    the flags are combined
+// prove                      ___________/~~\________    the bit after the answer is right, too
+// decides                    ______________/~~\_____    a cycle later: keeps the present sample out of this path
 // publish, late_fault, over  _________________/~~\__    cause and flags stay until the next one
-// An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA
-// does not fall, additional data of another length) withdraws it.
+//
+// An answer is published after the bit that follows it: one verdict for everything seen in the frame. A later fault (DATA does
+// not fall, additional data of another length) withdraws it.
 module s6_two_channel_verdict (
     // System clock.
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // Flags that go with give_up, refuse or announce; bits as the raw flags in the register map.
+    // Flags for give_up, refuse or announce; bits as the raw flags in the register map.
     input  wire  [19:0] found,
-    // Strobe: the answer has been taken; CRC and error bits decide.
+    // Strobe: the answer has been received; CRC and error bits decide.
     input  wire         answer_taken,
-    // Strobe, with taken or later: the answer has the length it should have; it is published.
+    // Strobe, with taken or later: the answer has the right length; publish it.
     input  wire         prove,
-    // The frame measures the delay: a good answer to a trigger is not published, its position is asked for once more.
+    // The frame measures the delay: a good answer to a trigger is not published, and its position is requested again.
     input  wire         is_measuring,
     // Strobe: the frame is aborted.
     input  wire         give_up,
-    // With give_up: its result has been published.
+    // With give_up: the result of the frame has been published.
     input  wire         is_late,
     // Strobe: no frame is begun for this trigger.
     input  wire         refuse,
-    // Strobe: the frame has ended as it should.
+    // Strobe: the frame has ended normally.
     input  wire         normal_end,
-    // Strobe: a trigger has been lost.
+    // Strobe: a trigger is lost.
     input  wire         lost,
     // Error bit 1, high = alarm.
     input  wire         f1,
     // Error bit 2, low = alarm; high in frames without it.
     input  wire         f2,
-    // The CRC of the bits as they came is the one received.
+    // The CRC of the bits as received equals the received CRC.
     input  wire         crc_ok,
-    // The word as it is stored now fits the received CRC; without guards as crc_ok.
+    // The stored word matches the received CRC; without guards equal to crc_ok.
     input  wire         stored_ok,
     // Strobe: answer_taken, a cycle later.
     output wire         taken,
-    // An answer has been taken, and not been published yet.
+    // An answer has been received, and is not published yet.
     output wire         is_pending,
     // With taken: the CRC is right.
     output wire         is_received,
-    // With taken: the CRC is wrong, and was so in the frame before.
+    // With taken: the CRC is wrong, as in the previous frame.
     output wire         is_doubtful,
     // Strobe: give_up, a cycle later.
     output wire         gave_up,
-    // There is still something to tell.
+    // High while a result is waiting to be published.
     output wire         is_telling,
     // Strobe: result of a trigger, cause and flags are valid.
     output wire         publish,
     // With publish: the position is good.
     output wire         good,
-    // Strobe: something was wrong after the result was published; cause and flags replace those of the result.
+    // Strobe: a fault was found after the result was published; cause and flags replace those of the result.
     output wire         late_fault,
-    // Strobe: the published position is not good after all; the one before comes back.
+    // Strobe: the published position is not good after all; the previous one returns.
     output wire         withdraw,
-    // Strobe: the published position stands, nothing can withdraw it any more.
+    // Strobe: the published position is final.
     output wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
     output wire   [4:0] cause_told,
@@ -72,12 +73,12 @@ module s6_two_channel_verdict (
     output wire  [19:0] flags_told,
     // Strobe one cycle before publish.
     output wire         publishes,
-    // Strobe, instead of publishes: the delay is measured, the position itself comes next.
+    // Strobe, instead of publishes: the delay is measured, and the position follows.
     output wire         once_more,
-    // Strobe: a trigger has been lost.
+    // Strobe: a trigger is lost.
     output wire         displaced
 );
-    // Flags that this core can find.
+    // Flags that this configuration can set.
     localparam  [19:0] POSSIBLE = 20'h80647;
     localparam  [19:0] CRC_WRONG = 20'd8;
     localparam  [19:0] PARALLEL_WRONG = 20'h100;
@@ -85,9 +86,9 @@ module s6_two_channel_verdict (
     localparam  [19:0] F2_CLEAR = 20'd32;
     localparam  [19:0] TRIGGER_OVERRUN = 20'd128;
 
-    // Flags to report: those that came with the strobe, of the answer, of lost triggers and of upsets.
+    // Flags to report: from the strobe, the answer, lost triggers and upsets.
     reg   [19:0] found_all;
-    // High if the received CRC does not fit the bits as they came, or as they are stored.
+    // High if the received CRC does not match the bits as received, or as stored.
     wire         crc_bad;
     // High if the answer has a wrong CRC or an alarm bit.
     wire         answer_bad;
@@ -99,9 +100,9 @@ module s6_two_channel_verdict (
     wire         measured;
     // Flags found in the cycle before.
     reg   [19:0] seen; initial seen = 20'd0;
-    // High for one cycle after prove if an answer was pending and the frame was not given up.
+    // High for one cycle after prove if an answer was pending and the frame was not aborted.
     reg          prove_seen; initial prove_seen = 1'b0;
-    // answer_taken, one cycle later, unless the frame was given up.
+    // answer_taken, one cycle later, unless the frame was aborted.
     reg          was_taken; initial was_taken = 1'b0;
     // give_up, one cycle later; never in two cycles in a row.
     reg          was_given_up; initial was_given_up = 1'b0;
@@ -119,7 +120,7 @@ module s6_two_channel_verdict (
     reg          publishing; initial publishing = 1'b0;
     // High for one cycle: the answer is good and has the right length.
     reg          is_good; initial is_good = 1'b0;
-    // Set when an answer is taken; cleared when its length is proven or the frame is given up.
+    // Set when an answer is received; cleared when its length is proven or the frame is aborted.
     reg          pending; initial pending = 1'b0;
     // High for one cycle: the published position is withdrawn.
     reg          withdrawing; initial withdrawing = 1'b0;
@@ -161,7 +162,7 @@ module s6_two_channel_verdict (
                 found_all = found_all | PARALLEL_WRONG;
             end
         end
-        // That is for the result to say.
+        // The result reports this.
         if (overrun & !measured) begin
             found_all = found_all | TRIGGER_OVERRUN;
         end
@@ -204,20 +205,20 @@ module s6_two_channel_verdict (
             was_lost <= 1'b0;
             flags_held <= 20'd0;
         end else begin
-            // Synthesis does not see by itself that some flags are never set.
+            // Mask flags that are never set, so that synthesis can remove them.
             seen <= found & POSSIBLE;
-            // A frame that is given up has that as its one result.
+            // An aborted frame has the abort as its only result.
             prove_seen <= prove & is_pending & !was_given_up;
             // An answer that is complete in the cycle of an abort is not left pending for the next frame.
             was_taken <= answer_taken & !was_given_up;
             was_given_up <= give_up & !was_given_up;
-            // Nothing has been published of a frame that measured.
+            // A measuring frame has published nothing.
             gave_up_late <= give_up & !was_given_up & is_late & !measured;
             refused <= refuse;
             ended <= normal_end;
             if (proven | was_given_up | refused) begin
                 flags_held <= found_all;
-                // What ends a frame that measures is told to nobody.
+                // The end of a measuring frame is not reported.
                 if (!measured) begin
                     overrun <= 1'b0;
                 end

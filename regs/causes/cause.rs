@@ -6,26 +6,26 @@ use crate::Named;
 /// One cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cause {
-    /// Its number.
+    /// Code in the result.
     pub code: u64,
-    /// Name, as counters and files have it.
+    /// Name in counters and files.
     pub name: &'static str,
-    /// Register that counts its frames, in the service of an EnDat channel.
+    /// Counter register in the service of an EnDat channel.
     pub counter: &'static str,
-    /// The same in words.
+    /// Short description.
     pub meaning: &'static str,
-    /// What it means for a user, and what to do; none for one that another protocol shares with EnDat.
+    /// Explanation and remedy; `None` if EnDat has the same cause.
     pub advice: Option<[&'static str; 2]>,
 }
 
 impl Cause {
-    /// The cause under a number.
+    /// The cause with this number.
     pub(crate) const fn at(&self, number: u8) -> Named {
         named(self.name, number as u32, self.meaning)
     }
 }
 
-/// The row of a code.
+/// The row with this code.
 pub(crate) const fn row(all: &'static [Cause], code: u64) -> &'static Cause {
     let mut at = 0;
     while all[at].code != code {
@@ -44,7 +44,7 @@ macro_rules! causes {
             #[doc = concat!("Code of `", $name, "`: ", $meaning, ".")]
             pub const $constant: u64 = $code;
         )*
-        /// All of them.
+        /// All causes, by code.
         pub const ALL: &[$crate::causes::Cause] = &[
             $($crate::causes::Cause {
                 code: $code,
@@ -54,7 +54,7 @@ macro_rules! causes {
                 advice: $crate::causes::cause::causes!(@advice $($advice),+),
             }),*
         ];
-        /// Words for a code.
+        /// Short description of a code.
         pub const fn name(code: u64) -> &'static str {
             match code {
                 $($constant => $meaning,)*
@@ -65,10 +65,10 @@ macro_rules! causes {
 }
 pub(crate) use causes;
 
-/// Codes of a protocol that a result has room for.
+/// Number of codes that fit into a result.
 pub const CODES: u8 = 32;
 
-/// The causes of a protocol under its codes, those below `N`.
+/// The causes below code `N`, by code.
 pub(crate) const fn coded<const N: usize>(all: &[Cause]) -> [Named; N] {
     let mut coded = [named("", 0, ""); N];
     let mut row = 0;

@@ -1,4 +1,4 @@
-//! SSI, the synchronous serial interface, as card and host see it. Its channels have no words of their own.
+//! SSI, the synchronous serial interface. Its channels have no additional words.
 
 pub mod causes;
 
@@ -8,7 +8,7 @@ use crate::named::{named, Named, Values};
 use crate::protocol_row::{channels, own, OwnField, ProtocolRow};
 use crate::result::LINE_FIRST;
 
-/// What card and host agree on of SSI.
+/// Facts about SSI that card and host share.
 pub const PROTOCOL: ProtocolRow = ProtocolRow {
     name: "SSI",
     word: "ssi",
@@ -29,7 +29,7 @@ pub const PROTOCOL: ProtocolRow = ProtocolRow {
 /// Causes under the codes of a result.
 const CAUSES: &[Named] = &coded::<{ cause::ALL.len() }>(cause::ALL);
 
-/// Raw flags: they have room beside the evidence.
+/// Raw flags that fit into the evidence word.
 const FLAGS: [Named; cause::ALL.len() - 1] = {
     assert!(cause::ALL.len() - 1 <= LINE_FIRST as usize);
     let mut flags = [named("", 0, ""); cause::ALL.len() - 1];
@@ -42,9 +42,9 @@ const FLAGS: [Named; cause::ALL.len() - 1] = {
     flags
 };
 
-/// Bits of the frame that are not position, beside the flags.
+/// Bits of the frame that are neither position nor flags.
 const SPECIALS: &[Named] = &[
-    named("special_0", 0, "last special bit that is shown"),
+    named("special_0", 0, "last special bit of the frame"),
     named("special_1", 1, "special bit before it"),
     named("special_2", 2, "special bit 2 before special_0"),
     named("special_3", 3, "special bit 3 before special_0"),
@@ -69,26 +69,26 @@ const FIELDS: &[OwnField] = &[
     own("start_timeout_us", Values::Plain, &[]),
 ];
 
-/// How a position comes: bits of the field that has the mode command in EnDat.
+/// Frame format: bits of the field that holds the mode command in EnDat.
 pub mod frame {
     use crate::named::{named, Named};
 
     /// The position is in Gray code.
     pub const GRAY: u32 = 0;
-    /// Each position comes twice, and the two are compared.
+    /// The encoder sends each position twice; the card compares the two.
     pub const TWICE: u32 = 1;
-    /// A frame may go out: without it nothing does.
+    /// Enables the clock; the channel sends no frame without it.
     pub const CLOCKED: u32 = 2;
-    /// Behind the position comes a parity bit, of its bits as they are sent.
+    /// A parity bit over the position as sent follows the position.
     pub const PARITY: u32 = 3;
-    /// With that: it is odd, otherwise even.
+    /// The parity is odd; otherwise even.
     pub const ODD: u32 = 4;
-    /// All of them.
+    /// All bits.
     pub const ALL: &[Named] = &[
         named("gray", GRAY, "in Gray code"),
-        named("twice", TWICE, "each position twice, compared"),
-        named("clocked", CLOCKED, "a frame goes out; always 1"),
-        named("parity", PARITY, "a parity bit behind the position"),
-        named("odd", ODD, "which is odd"),
+        named("twice", TWICE, "each position sent twice and compared"),
+        named("clocked", CLOCKED, "sends a frame; must be 1"),
+        named("parity", PARITY, "a parity bit follows the position"),
+        named("odd", ODD, "the parity is odd"),
     ];
 }

@@ -1,4 +1,4 @@
-//! The port of a T-format encoder: requests of the host, fields of the replies. Its settings are those of its configuration.
+//! The port of a T-format encoder: requests of the host, fields of the replies. Its configuration words hold its settings.
 
 pub mod causes;
 
@@ -12,13 +12,13 @@ use crate::{field, word, Access, Block, Named, Values, BLOCK_STRIDE, T_FORMAT_BA
 use word as at;
 use Access::{ReadOnly, Strobe};
 
-/// Resets count only so many times in a row.
+/// Requests in a row that a reset needs before it takes effect.
 pub const RESETS_IN_A_ROW: u32 = 10;
 
-/// Lowest bit of a position that counts turns. An encoder uses the lower ones of the 24 bits below it.
+/// Lowest turn bit of a position. An encoder uses the lower ones of the 24 bits below it for the angle.
 pub const TURNS_AT: u32 = 24;
 
-/// What card and host agree on of T-format.
+/// Facts about T-format that card and host share.
 pub const PROTOCOL: ProtocolRow = ProtocolRow {
     name: "T-format",
     word: "t_format",
@@ -38,7 +38,7 @@ pub const PROTOCOL: ProtocolRow = ProtocolRow {
 
 /// Causes under the codes of a result.
 const CAUSES: &[Named] = &coded::<{ cause::ALL.len() }>(cause::ALL);
-/// Causes as an exchange of the host has them: those before the trigger overrun.
+/// Causes of an exchange that the host requests: those before the trigger overrun.
 const EXCHANGE: &[Named] = &coded::<{ cause::TRIGGER_OVERRUN as usize }>(cause::ALL);
 
 /// Raw flags from flag `FIRST` on.
@@ -55,7 +55,7 @@ const fn flags<const FIRST: usize, const N: usize>() -> [Named; N] {
     flags
 }
 
-/// Raw flags that stand beside the evidence, and in the status.
+/// Raw flags in the evidence word and in the status.
 const EVIDENCE: &[Named] = &flags::<0, { LINE_FIRST as usize }>();
 const LINE: &[Named] =
     &flags::<{ LINE_FIRST as usize }, { cause::ALL.len() - 1 - LINE_FIRST as usize }>();
@@ -70,7 +70,7 @@ const FIELDS: &[OwnField] = &[
     own("command", Values::Plain, &[]),
     own("request_id", Values::Plain, &[(0, 5), (7, 12), (14, 15)]),
     own("start_timeout_us", Values::Plain, &[(1, 63)]),
-    // The port refuses what is no request, with a cause.
+    // The port rejects an invalid request with a cause.
     own("send_id", Values::Codes(request::ALL), &[(0, 15)]),
 ];
 
@@ -79,7 +79,7 @@ pub mod request {
     use crate::named::codes;
 
     codes! {
-        /// Every request.
+        /// All requests.
         ALL: u8;
         SINGLE_TURN = 0x0, "single_turn", "single-turn position";
         MULTI_TURN = 0x1, "multi_turn", "multi-turn position";
@@ -93,49 +93,49 @@ pub mod request {
     }
 }
 
-/// Words that the host reaches, as `host_address` counts them.
+/// Addresses of the host's words, as `host_address` counts them.
 pub mod word {
-    /// A request with an exchange of its own.
+    /// Sends a request.
     pub const SEND: u8 = 0;
-    /// What became of it.
+    /// State and data of the request.
     pub const ANSWER: u8 = 1;
     /// Fields of the last reply.
     pub const FIELDS: u8 = 2;
-    /// Which parts of the position there are.
+    /// Received parts of the position.
     pub const PARTS: u8 = 3;
 }
 
-/// Requests to a T-format encoder beside its triggers, and the fields of its replies.
+/// Requests to a T-format encoder in addition to its triggers, and the fields of its replies.
 pub const T_FORMAT: Block = Block {
     name: "t_format",
     base: T_FORMAT_BASE,
     stride: BLOCK_STRIDE,
     per_channel: true,
-    meaning: "Requests to a T-format encoder beside its triggers, and the fields of its replies; 0 on a channel that speaks another protocol.",
+    meaning: "Requests to a T-format encoder in addition to triggers, and the fields of its replies; 0 on a channel with another protocol.",
     is_ram: false,
     part: Some(Part::TFormat),
     registers: &[
-        word("send", at::SEND, Strobe, "Sends one request, now or as soon as the exchange under way has ended; not taken while answer.busy.", &[
-            field("data", 0, 8, "", "EEPROM data, of request 6"),
-            field("address", 8, 7, "", "EEPROM address, of requests 6 and 13; 127 is the page register"),
+        word("send", at::SEND, Strobe, "Sends one request, now or when the exchange under way has ended; ignored while answer.busy.", &[
+            field("data", 0, 8, "", "EEPROM data for request 6"),
+            field("address", 8, 7, "", "EEPROM address for requests 6 and 13; 127 is the page register"),
             field("id", 16, 4, "", "Request ID").codes(request::ALL).by_protocol("send_id"),
         ]),
-        word("answer", at::ANSWER, ReadOnly, "What became of the request in send.", &[
-            field("data", 0, 8, "", "EEPROM data as they came last"),
-            field("id", 8, 4, "", "ID that the reply repeats"),
+        word("answer", at::ANSWER, ReadOnly, "State and data of the request in send.", &[
+            field("data", 0, 8, "", "EEPROM data of the last reply that had it"),
+            field("id", 8, 4, "", "ID echoed in the reply"),
             field("cause", 12, 4, "", "T-format cause of the exchange").codes(EXCHANGE),
-            field("done", 16, 1, "", "The exchange has ended; 0 from send on"),
-            field("busy", 17, 1, "", "The exchange is under way, or waits for its turn"),
+            field("done", 16, 1, "", "The exchange has ended; cleared by send"),
+            field("busy", 17, 1, "", "The exchange is under way or waiting"),
         ]),
-        word("fields", at::FIELDS, ReadOnly, "Fields of the last reply, of a trigger or of send.", &[
-            field("status", 0, 8, "", "Status field (SF); 0 if none came"),
-            field("encoder_id", 8, 8, "", "Kind of encoder (ENID) as it came last"),
-            field("alarm", 16, 8, "", "Alarm field (ALMC) as it came last"),
+        word("fields", at::FIELDS, ReadOnly, "Fields of the last reply, to a trigger or to send.", &[
+            field("status", 0, 8, "", "Status field (SF); 0 if none was received"),
+            field("encoder_id", 8, 8, "", "Kind of encoder (ENID), last received"),
+            field("alarm", 16, 8, "", "Alarm field (ALMC), last received"),
             field("crc", 24, 8, "", "CRC as received"),
         ]),
-        word("parts", at::PARTS, ReadOnly, "Which parts of the position have come since reset.", &[
-            field("single_valid", 0, 1, "", "There is a single-turn position, bits 23..0"),
-            field("multi_valid", 1, 1, "", "There is a multi-turn position, bits 47..24"),
+        word("parts", at::PARTS, ReadOnly, "Parts of the position received since reset.", &[
+            field("single_valid", 0, 1, "", "Single-turn position received, bits 23..0"),
+            field("multi_valid", 1, 1, "", "Multi-turn position received, bits 47..24"),
         ]),
     ],
 };

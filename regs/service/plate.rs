@@ -1,17 +1,17 @@
-//! The words of the encoder that initialisation reads.
+//! The words of the encoder that the initialisation reads.
 
 use super::words::word;
 
-/// A word of the encoder that the name plate has.
+/// A word of the encoder in the name plate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlateEntry {
     /// Name.
     pub name: &'static str,
     /// Memory area.
     pub mrs: u8,
-    /// Address in it.
+    /// Address in the memory area.
     pub address: u8,
-    /// What it is.
+    /// Meaning.
     pub meaning: &'static str,
 }
 
@@ -24,7 +24,7 @@ const fn entry(name: &'static str, mrs: u8, address: u8, meaning: &'static str) 
     }
 }
 
-/// What initialisation reads, in its order; areas one after the other (TI, ADDI-DATA drivers; Beckhoff object list).
+/// Words that the initialisation reads, in order; areas one after the other (TI, ADDI-DATA drivers; Beckhoff object list).
 pub const NAME_PLATE: [PlateEntry; 21] = [
     entry("alarms", 0xB9, 0, "Alarms before they were cleared"),
     entry("warnings", 0xB9, 1, "Warnings before they were cleared"),
@@ -118,10 +118,10 @@ pub const NAME_PLATE: [PlateEntry; 21] = [
         "Word 3 of the operating status as set: bits 1..0 = 10: 10 to 30 us, 01: 1.25 to 3.75 us",
     ),
 ];
-/// Where the tracked line delay stands behind the name plate, in system clock cycles.
+/// Address of the tracked line delay, in system clock cycles; it follows the name plate.
 pub const PLATE_DELAY: u8 = word::NAME_PLATE + NAME_PLATE.len() as u8;
 
-/// Place of a name plate entry.
+/// Address of a name plate entry.
 pub fn plate(name: &str) -> u8 {
     let index = NAME_PLATE.iter().position(|e| e.name == name);
     word::NAME_PLATE + index.expect("a name of the name plate") as u8

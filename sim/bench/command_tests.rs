@@ -1,4 +1,4 @@
-//! Every mode command through cable and bench, with the plain receiver.
+//! Every mode command through cable and bench, with the reference receiver.
 
 use super::*;
 use crate::{
@@ -28,7 +28,7 @@ impl Rig {
         Self(bench)
     }
 
-    /// One exchange; the cause of its result.
+    /// One exchange; returns the cause of its result.
     fn exchange(&mut self, code: u8, address: u8, parameter: u16) -> u64 {
         let b = &mut self.0;
         b.set("command", code.into());
@@ -115,7 +115,7 @@ fn a_word_is_read_while_positions_go_on() {
     let ready = |rig: &mut Rig| {
         let busy = |word| word & 0x20_0000 != 0;
         let waits = (0..100).position(|_| !busy(info(rig, 0b111_000, 0)));
-        waits.expect("not busy for ever")
+        waits.expect("busy for a limited time")
     };
     assert!(ready(&mut rig) > 3);
     assert_eq!(info(&mut rig, 0b111_000, 0), 0x07_A100);

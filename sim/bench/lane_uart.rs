@@ -1,4 +1,4 @@
-//! Hosts' ends of the serial lines of many cards, one in each lane, bit by bit in system clock cycles; as [`super::Uart`] is for one.
+//! Host ends of the serial lines of many cards, one in each lane, bit by bit in system clock cycles; see [`super::Uart`] for a single card.
 
 use super::{bits, LaneBench};
 use rtl_design::engine::PortId;
@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 /// Bits of a byte on the line: start, eight, stop.
 const BITS: u8 = 10;
 
-/// One end.
+/// One host end.
 #[derive(Clone, Default)]
 struct End {
     sending: VecDeque<u8>,
@@ -15,7 +15,7 @@ struct End {
     shift: u16,
     bits_left: u8,
     next_bit: u64,
-    /// Cycle of the next sample of the byte that is being received, how many samples it had, and they.
+    /// Cycle of the next sample of the byte being received, the number of its samples, and the samples.
     sample_at: u64,
     samples: u8,
     byte: u16,
@@ -30,10 +30,10 @@ pub struct LaneUart {
     ends: Vec<End>,
     /// Levels at the cards' inputs.
     levels: Vec<u64>,
-    /// Lanes that send, and that receive.
+    /// Lanes that send.
     sending: Vec<u64>,
     receiving: Vec<u64>,
-    /// When the next of them has something to do.
+    /// Cycle of the next action in any of them.
     next_bit: u64,
     next_sample: u64,
     received: Vec<(usize, u8)>,
@@ -71,7 +71,7 @@ impl LaneUart {
         }
     }
 
-    /// Bytes that have come since they were taken, with their lanes.
+    /// Bytes received since the last call, with their lanes.
     pub fn take(&mut self) -> Vec<(usize, u8)> {
         std::mem::take(&mut self.received)
     }
@@ -140,7 +140,7 @@ impl LaneUart {
                 end.sample_at = now + self.bit_cycles;
                 if end.samples == BITS {
                     self.receiving[part] &= !(1 << bit);
-                    // Without a stop bit it is no byte.
+                    // A byte without stop bit is dropped.
                     if end.byte >> 9 == 1 {
                         self.received.push((lane, (end.byte >> 1) as u8));
                     }

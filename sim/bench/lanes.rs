@@ -1,6 +1,6 @@
-//! Many benches side by side: one pass of the engine for all, a line and an encoder for each.
+//! Many benches in parallel: one pass of the engine for all, with a line and an encoder for each.
 //!
-//! Everything is at the same moments as on a [`super::Bench`] with the same settings: a lane gives what the case gives alone.
+//! All times equal those on a [`super::Bench`] with the same settings: a lane gives the same results as the case alone.
 
 use super::pins::{find, Pins, TimeBase};
 use super::record::ResultPorts;
@@ -13,17 +13,17 @@ use rtl_design::engine::{Lanes, PortId};
 #[derive(Clone)]
 struct Port {
     links: Vec<Link>,
-    /// When each link has something to do next.
+    /// Next event time of each link.
     due: Vec<Time>,
     ids: Pins,
-    /// DATA as it is at the designs' pins.
+    /// DATA at the designs' pins.
     data: Vec<u64>,
-    /// CLOCK, driver and level as they were taken to the lines.
+    /// CLOCK, driver and level as applied to the lines.
     pins: Vec<[u64; 3]>,
     samplers: Vec<Sampler>,
 }
 
-/// Designs on their benches.
+/// Designs with their benches.
 #[derive(Clone)]
 pub struct LaneBench {
     engine: Lanes,
@@ -33,7 +33,7 @@ pub struct LaneBench {
     base: TimeBase,
     busy: Option<PortId>,
     results: Option<ResultPorts>,
-    /// The causes at the end of the last cycle, bit by bit.
+    /// The causes at the end of the last cycle, by bit.
     causes: Vec<u64>,
     delivered: Vec<Vec<ChannelResult>>,
     delivered_count: usize,
@@ -41,7 +41,7 @@ pub struct LaneBench {
     is_double: bool,
 }
 
-/// The numbers of the bits that are set.
+/// The indices of the set bits.
 pub(crate) fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = (word != 0).then(|| word.trailing_zeros() as usize);
@@ -54,7 +54,7 @@ impl LaneBench {
     /// Benches with the system clock `system_hz`; for each named set of pins the links of all lanes.
     ///
     /// # Panics
-    /// If there are not as many links as lanes.
+    /// If the numbers of links and lanes differ.
     pub fn new(engine: Lanes, system_hz: u64, links: Vec<(PinNames, Vec<Link>)>) -> Self {
         let words = engine.lanes() / 64;
         let port = |(names, links): (PinNames, Vec<Link>)| {
@@ -65,7 +65,7 @@ impl LaneBench {
                 links,
                 ids: Pins::find(&names, engine.ports()),
                 data: vec![0; words],
-                // As links are made: CLOCK HIGH, DATA released.
+                // Initial state of links: CLOCK HIGH, DATA released.
                 pins: vec![[u64::MAX, 0, 0]; words],
             }
         };
@@ -102,12 +102,12 @@ impl LaneBench {
         self.engine.set_all(id, value);
     }
 
-    /// The designs look at DATA on both edges of their clock.
+    /// The designs sample DATA on both edges of their clock.
     pub fn set_double_edge(&mut self) {
         self.is_double = true;
     }
 
-    /// From now on every sample of DATA is looked up. The level is that of so many half cycles before the strobe's, lane by lane
+    /// From now on every sample of DATA is evaluated. The level is that of so many half cycles before the strobe, for each lane
     /// (synchroniser and filter).
     pub fn keep_samples(&mut self, latency_halves: impl Fn(usize) -> u64) {
         self.keeps_samples = true;
@@ -123,15 +123,15 @@ impl LaneBench {
         self.engine.lanes()
     }
 
-    /// Makes something wrong with the link of a lane on pin set `port`.
+    /// Disturbs the link of a lane on pin set `port`.
     pub fn disturb(&mut self, port: usize, lane: usize, change: impl FnOnce(&mut Link)) {
         let port = &mut self.ports[port];
         change(&mut port.links[lane]);
-        // Looked at once more: it may have something to do sooner now.
+        // Check at once: its next event may be earlier now.
         port.due[lane] = 0;
     }
 
-    /// Inverts a bit of a register in one lane, as an upset would: pins that it drives change at once, up to the next clock edge.
+    /// Inverts a bit of a register in one lane, as an upset does: the pins that it drives change at once, until the next clock edge.
     pub fn upset(&mut self, register: usize, bit: usize, lane: usize) {
         self.engine.flip(register, bit, lane);
         let now = self.now();
@@ -156,7 +156,7 @@ impl LaneBench {
         self.cycle
     }
 
-    /// When the latest edge of the system clock was.
+    /// Time of the latest edge of the system clock.
     pub fn now(&self) -> Time {
         edge_time(self.cycle, self.system_hz)
     }
@@ -181,7 +181,7 @@ impl LaneBench {
         self.delivered_count
     }
 
-    /// Which of the lanes `64 * part` to `64 * part + 63` are busy.
+    /// Busy lanes among `64 * part` to `64 * part + 63`.
     pub fn busy(&mut self, part: usize) -> u64 {
         self.busy.map_or(0, |id| self.engine.word(id, 0, part))
     }
@@ -258,7 +258,7 @@ impl LaneBench {
         }
     }
 
-    /// Looks up the samples that are still open. The lines must have been quiet for a while.
+    /// Evaluates the open samples. The lines must have been quiet for a while.
     pub fn finish_samples(&mut self) {
         let now = self.now();
         for port in &mut self.ports {
@@ -270,7 +270,7 @@ impl LaneBench {
 }
 
 impl Port {
-    /// Lets everything happen that is due, and drives DATA into the designs.
+    /// Processes all due events, and drives DATA into the designs.
     fn advance(&mut self, engine: &mut Lanes, now: Time) {
         for (part, data) in self.data.iter_mut().enumerate() {
             let lanes = 64 * part..64 * part + 64;
@@ -288,7 +288,7 @@ impl Port {
         }
     }
 
-    /// Takes pins that have changed to the lines.
+    /// Applies changed pins to the lines.
     fn take_pins(&mut self, engine: &mut Lanes, now: Time) {
         for part in 0..self.data.len() {
             let clock = engine.word(self.ids.clock, 0, part);
@@ -304,7 +304,7 @@ impl Port {
                 };
                 let link = &mut self.links[64 * part + bit];
                 link.set_pins(now, is_set(clock), drive);
-                // What the receiver does to DATA is on its own pin at once.
+                // The receiver sees its own DATA output at its pin at once.
                 let data = &mut self.data[part];
                 *data = *data & !(1 << bit) | u64::from(link.data()) << bit;
                 self.due[64 * part + bit] = link.next_event();

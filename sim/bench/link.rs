@@ -1,4 +1,4 @@
-//! One encoder at the end of one line.
+//! An encoder with its line.
 
 use crate::{
     encoder::{Drive, Encoder, EncoderConfig, Output},
@@ -13,11 +13,11 @@ pub struct LinkTrace {
     pub clock_at_receiver: Vec<(Time, bool)>,
     /// CLOCK at the encoder's pin.
     pub clock_at_encoder: Vec<(Time, bool)>,
-    /// What the receiver does to DATA.
+    /// Drive of the receiver on DATA.
     pub receiver: Vec<(Time, Drive)>,
-    /// The same as heard at the encoder.
+    /// Drive of the receiver as it arrives at the encoder.
     pub receiver_at_encoder: Vec<(Time, Drive)>,
-    /// What the encoder does to DATA.
+    /// Drive of the encoder on DATA.
     pub encoder: Vec<(Time, Output)>,
     /// DATA at the receiver's pin.
     pub data_at_receiver: Vec<DataChange>,
@@ -31,13 +31,13 @@ fn note<T: PartialEq>(track: &mut Vec<(Time, T)>, time: Time, value: T) {
     }
 }
 
-/// A line with its encoder. Between two system clock edges it runs by itself, in picoseconds.
+/// A line with its encoder. Between two system clock edges it advances independently, in picoseconds.
 #[derive(Clone)]
 pub struct Link {
     line: Line,
     encoder: Encoder,
     clock: bool,
-    /// When the line and the encoder have something to do next.
+    /// Next event time of the line and of the encoder.
     line_due: Time,
     encoder_due: Time,
     /// The encoder was changed from outside.
@@ -66,12 +66,12 @@ impl Link {
         &self.line
     }
 
-    /// The line, to forget old samples.
+    /// The line, to drop old samples.
     pub fn line_mut(&mut self) -> &mut Line {
         &mut self.line
     }
 
-    /// The line, to make something wrong with it.
+    /// The line, to disturb it.
     pub fn disturb(&mut self, change: impl FnOnce(&mut Line)) {
         change(&mut self.line);
         self.line_due = self.line.next_event();
@@ -82,35 +82,35 @@ impl Link {
         &self.encoder
     }
 
-    /// The encoder, to make something wrong with it.
+    /// The encoder, to disturb it.
     pub fn encoder_mut(&mut self) -> &mut Encoder {
         self.is_changed = true;
         &mut self.encoder
     }
 
-    /// Notes only so many frames, violations and conflicts, the last ones.
+    /// Keeps only the last `most` frames, violations and conflicts.
     pub fn keep(&mut self, most: usize) {
         self.encoder.keep(most);
         self.line.keep(most);
     }
 
-    /// From now on every change is kept.
+    /// From now on every change is recorded.
     pub fn record(&mut self) {
         self.trace = Some(LinkTrace::default());
         self.note(0);
     }
 
-    /// What was recorded.
+    /// The recorded changes.
     pub fn trace(&self) -> Option<&LinkTrace> {
         self.trace.as_ref()
     }
 
-    /// When something happens next, if the receiver keeps its pins as they are.
+    /// Time of the next event if the receiver does not change its pins.
     pub fn next_event(&self) -> Time {
         self.line_due.min(self.encoder_due)
     }
 
-    /// Lets everything happen that is due by `time`.
+    /// Processes all events up to `time`.
     pub fn advance_to(&mut self, time: Time) {
         if std::mem::take(&mut self.is_changed) {
             self.ask_encoder(time);

@@ -1,8 +1,8 @@
 //! Runs a design against encoders and lines, in real time.
 //!
-//! Edge `k` of the system clock is at `k / system_hz`, rounded to the picosecond. At each edge the bench lets the links run up to it, gives
-//! the design the DATA levels of that moment, ticks it, and takes its outputs to the lines at that same moment. Pins of the
-//! design have no delay of their own: put them into the line's transceivers.
+//! Edge `k` of the system clock is at `k / system_hz`, rounded to the picosecond. At each edge the bench advances the links up to it, gives
+//! the design the DATA levels of that time, ticks it, and applies its outputs to the lines at the same time. Pins of the
+//! design have no delay; model it in the line's transceivers.
 
 #[cfg(test)]
 mod command_tests;
@@ -10,6 +10,7 @@ mod lane_uart;
 mod lanes;
 mod link;
 mod other;
+mod pair;
 mod pins;
 mod record;
 mod sampler;
@@ -24,6 +25,7 @@ pub(crate) use lanes::bits;
 pub use lanes::LaneBench;
 pub use link::{Link, LinkTrace};
 pub use other::OtherEncoder;
+pub use pair::Pair;
 pub use pins::PinNames;
 pub use record::{ChannelResult, Cycles, Watched};
 pub use settings::ChannelSettings;
@@ -45,17 +47,17 @@ struct Port {
     link: Link,
     ids: Pins,
     data: Option<bool>,
-    /// When the link has something to do next.
+    /// Next event time of the link.
     due: Time,
-    /// The pins as they were taken to the line.
+    /// The pins as applied to the line.
     pins: Option<(bool, Drive)>,
     sampler: Sampler,
 }
 
-/// Cycles for which the bench holds reset, and a trigger pin.
+/// Cycles of the reset, and of a pulse on the trigger pin.
 const PULSE_CYCLES: u64 = 8;
 
-/// When a half cycle of a clock ends: the edges are the even ones.
+/// End of a half cycle of a clock; the even ones are edges.
 fn half_time(half: u64, hz: u64) -> Time {
     let after = edge_time(half.div_ceil(2), hz);
     match half % 2 {
@@ -64,13 +66,13 @@ fn half_time(half: u64, hz: u64) -> Time {
     }
 }
 
-/// When an edge of a clock is, rounded to the picosecond.
+/// Time of an edge of a clock, rounded to the picosecond.
 fn edge_time(cycle: u64, hz: u64) -> Time {
     let hz = u128::from(hz);
     ((u128::from(cycle) * 1_000_000_000_000 + hz / 2) / hz) as Time
 }
 
-/// Whether a microsecond ends with this cycle.
+/// True if a microsecond ends with this cycle.
 fn is_tick_us(cycle: u64, hz: u64) -> bool {
     let us = |cycle: u64| u128::from(cycle) * 1_000_000 / u128::from(hz);
     us(cycle) != us(cycle - 1)
@@ -119,7 +121,7 @@ impl<E: Engine> Bench<E> {
         bench
     }
 
-    /// Puts a link on a set of pins; gives its number.
+    /// Adds a link to a set of pins; returns its number.
     pub fn add_endat(&mut self, names: &PinNames, link: Link) -> usize {
         self.ports.push(Port {
             link,
@@ -132,7 +134,7 @@ impl<E: Engine> Bench<E> {
         self.ports.len() - 1
     }
 
-    /// The design looks at DATA on both edges of its clock.
+    /// The design samples DATA on both edges of its clock.
     pub fn set_double_edge(&mut self) {
         self.is_double = true;
     }
@@ -145,7 +147,7 @@ impl<E: Engine> Bench<E> {
         bench
     }
 
-    /// Drives the configuration inputs that the design has.
+    /// Drives the configuration inputs of the design.
     pub fn configure(&mut self, settings: &ChannelSettings) {
         for (name, value) in settings.ports() {
             if self.has_port(name) {
@@ -160,7 +162,7 @@ impl<E: Engine> Bench<E> {
         self.run_cycles(PULSE_CYCLES + 1);
     }
 
-    /// Holds the reset input (`reset` or `rst_i`), if there is one, for a few cycles.
+    /// Holds the reset input (`reset` or `rst_i`), if the design has one, for a few cycles.
     pub fn reset(&mut self) {
         let Some(name) = ["reset", "rst_i"].into_iter().find(|n| self.has_port(n)) else {
             return;
@@ -171,19 +173,19 @@ impl<E: Engine> Bench<E> {
         self.run_cycles(1);
     }
 
-    /// Sets how many cycles before the strobe's the sampled level was at the pin (synchroniser and filter).
+    /// Sets the latency from pin to sample strobe in cycles (synchroniser and filter).
     pub fn set_sample_latency(&mut self, cycles: u64) {
         self.set_sample_latency_halves(2 * cycles);
     }
 
-    /// The same in half cycles.
+    /// Sets this latency in half cycles.
     pub fn set_sample_latency_halves(&mut self, halves: u64) {
         for port in &mut self.ports {
             port.sampler.latency_halves = halves;
         }
     }
 
-    /// From now on every change of this port of the design is kept.
+    /// From now on every change of this port of the design is recorded.
     pub fn watch(&mut self, name: &str) {
         let id = self.engine.port(name);
         let port = &self.engine.ports()[id.0];
@@ -192,12 +194,12 @@ impl<E: Engine> Bench<E> {
         self.watched.push(watched);
     }
 
-    /// The ports that are being watched.
+    /// The watched ports.
     pub fn watched(&self) -> &[Watched] {
         &self.watched
     }
 
-    /// From now on the values of all ports are kept for every cycle, as a stimulus for other executions of the design.
+    /// From now on the values of all ports are recorded for every cycle, as a stimulus for other executions of the design.
     pub fn record_cycles(&mut self) {
         self.cycles = Some(Cycles::new(self.engine.ports()));
     }
@@ -207,7 +209,7 @@ impl<E: Engine> Bench<E> {
         self.cycles.as_ref()
     }
 
-    /// From now on everything on the links is kept.
+    /// From now on everything on the links is recorded.
     pub fn record_links(&mut self) {
         self.ports.iter_mut().for_each(|p| p.link.record());
     }
@@ -217,7 +219,7 @@ impl<E: Engine> Bench<E> {
         &mut self.engine
     }
 
-    /// Whether the design has a port of this name.
+    /// True if the design has a port of this name.
     pub fn has_port(&self, name: &str) -> bool {
         self.engine.ports().iter().any(|p| p.name == name)
     }
@@ -244,12 +246,12 @@ impl<E: Engine> Bench<E> {
         self.cycle
     }
 
-    /// When an edge of the system clock is.
+    /// Time of an edge of the system clock.
     pub fn time_of(&self, cycle: u64) -> Time {
         edge_time(cycle, self.system_hz)
     }
 
-    /// When the latest edge of the system clock was.
+    /// Time of the latest edge of the system clock.
     pub fn now(&self) -> Time {
         self.time_of(self.cycle)
     }
@@ -259,10 +261,10 @@ impl<E: Engine> Bench<E> {
         &self.ports[index].link
     }
 
-    /// A link, to make something wrong with its encoder.
+    /// A link, to disturb its encoder.
     pub fn link_mut(&mut self, index: usize) -> &mut Link {
         let port = &mut self.ports[index];
-        // Whatever is changed there may have something to do at once.
+        // The caller may change it, so it may have an event at once.
         port.due = 0;
         &mut port.link
     }
@@ -272,28 +274,28 @@ impl<E: Engine> Bench<E> {
         self.ports.len()
     }
 
-    /// Links and encoders note only so much of each kind, the last entries: for a bench that runs for days.
+    /// Links and encoders keep only the last `most` entries of each kind: for a bench that runs for days.
     pub fn keep(&mut self, most: usize) {
         self.ports.iter_mut().for_each(|port| port.link.keep(most));
         (0..self.others.len()).for_each(|n| self.other_mut(n).keep(most));
     }
 
-    /// What encoder `index` noted about its frames.
+    /// Frame logs of encoder `index`.
     pub fn frames(&self, index: usize) -> &[FrameLog] {
         self.link(index).encoder().frames()
     }
 
-    /// What the design did wrong in the eyes of encoder `index`.
+    /// Violations by the design, according to encoder `index`.
     pub fn violations(&self, index: usize) -> &[(Time, Violation)] {
         self.link(index).encoder().violations()
     }
 
-    /// Moments when DATA of link `index` was driven from both ends.
+    /// Times when both ends drove DATA of link `index`.
     pub fn conflicts(&self, index: usize) -> Vec<Conflict> {
         self.link(index).line().conflicts(self.now())
     }
 
-    /// The samples that the design took on link `index`, with what was on the line; the latest ones appear after 20 us.
+    /// The samples of the design on link `index`, with the line's content; the latest ones appear after 20 us.
     pub fn samples(&self, index: usize) -> &[Sample] {
         &self.ports[index].sampler.samples
     }
@@ -349,7 +351,7 @@ impl<E: Engine> Bench<E> {
         self.note_outputs(now);
     }
 
-    /// Lets everything on the links happen up to now, and drives DATA into the design.
+    /// Processes all events on the links up to now, and drives DATA into the design.
     fn drive_data(&mut self, now: Time) {
         for port in &mut self.others {
             port.drive_data(&mut self.engine, now);
@@ -385,7 +387,7 @@ impl<E: Engine> Bench<E> {
         self.run_until(self.now() + span);
     }
 
-    /// Runs until `done` says so; false if it has not within `span`.
+    /// Runs until `done` returns true; false if it does not within `span`.
     pub fn run_until_done(&mut self, span: Time, mut done: impl FnMut(&mut Self) -> bool) -> bool {
         let end = self.now() + span;
         while !done(self) {
@@ -397,7 +399,7 @@ impl<E: Engine> Bench<E> {
         true
     }
 
-    /// Waits until the block `Channel` is not busy, triggers it and runs until it delivers a result; none if one of the two
+    /// Waits until the block `Channel` is not busy, triggers it and runs until it delivers a result; `None` if one of the two
     /// takes longer than `span`.
     pub fn frame(&mut self, span: Time) -> Option<ChannelResult> {
         if self.has_port("busy") && !self.run_until_done(span, |b| b.get("busy") == 0) {
@@ -410,7 +412,7 @@ impl<E: Engine> Bench<E> {
     }
 
     fn drive_base(&mut self) {
-        // The values of this cycle: those of the edge before stay until this one has passed.
+        // The values of this cycle: those after the previous edge remain until this one has passed.
         let last = self.cycle - 1;
         if let Some(id) = self.base.timestamp {
             self.engine.set(id, u128::from(last & 0xFFFF_FFFF));

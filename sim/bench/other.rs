@@ -7,37 +7,37 @@ use endat_hdl::regs::Protocol;
 use rtl_design::engine::{Engine, PortId};
 use std::any::Any;
 
-/// An encoder of another protocol than EnDat, at the end of one line.
+/// An encoder of another protocol than EnDat, with its line.
 pub trait OtherEncoder: Any + Send {
-    /// What it speaks.
+    /// Protocol.
     fn protocol(&self) -> Protocol;
 
-    /// The receiver does this to the line from `time` on.
+    /// The receiver drives the line like this from `time` on.
     fn set_receiver(&mut self, time: Time, drive: Drive);
 
-    /// The receiver's clock is at this level from `time` on; of no meaning where the line has no clock.
+    /// The receiver's clock has this level from `time` on; unused if the line has no clock.
     fn set_clock(&mut self, _time: Time, _level: bool) {}
 
-    /// Lets everything happen that is due by `time`; gives DATA at the receiver's pin.
+    /// Processes all events up to `time`; returns DATA at the receiver's pin.
     fn advance_to(&mut self, time: Time) -> bool;
 
-    /// The line at the encoder's pins: changes with their times, if they are kept.
+    /// The line at the encoder's pins: recorded changes with their times.
     fn trace(&self) -> &[(Time, bool)];
 
-    /// What the receiver has done wrong, in words.
+    /// Violations by the receiver, as text.
     fn complaints(&self) -> Vec<String>;
 
-    /// Notes only so much of each kind, the last entries.
+    /// Keeps only the last `most` entries of each kind.
     fn keep(&mut self, most: usize);
 
-    /// Itself, for who knows which it is.
+    /// For a downcast.
     fn as_any(&self) -> &dyn Any;
 
     /// See [`Self::as_any`].
     fn as_any_mut(&mut self) -> &mut dyn Any;
 }
 
-/// One on the pins of a design.
+/// An encoder at the pins of a design.
 pub(super) struct OtherPort {
     encoder: Box<dyn OtherEncoder>,
     ids: DataPins,
@@ -46,7 +46,7 @@ pub(super) struct OtherPort {
 }
 
 impl OtherPort {
-    /// Lets everything happen up to now, and drives DATA into the design.
+    /// Processes all events up to now, and drives DATA into the design.
     pub(super) fn drive_data(&mut self, engine: &mut impl Engine, now: Time) {
         let data = self.encoder.advance_to(now);
         if self.data != Some(data) {
@@ -55,7 +55,7 @@ impl OtherPort {
         }
     }
 
-    /// Takes the design's pins to the line.
+    /// Applies the design's pins to the line.
     pub(super) fn take_pins(&mut self, engine: &mut impl Engine, now: Time) {
         let drive = match engine.get(self.ids.data_oe) != 0 {
             true => Drive::level(engine.get(self.ids.data_o) != 0),
@@ -69,7 +69,7 @@ impl OtherPort {
 }
 
 impl<E: Engine> Bench<E> {
-    /// Puts an encoder of another protocol on a set of pins; gives its number among all of them.
+    /// Adds an encoder of another protocol to a set of pins; returns its number among these.
     pub fn add_other(&mut self, names: &PinNames, encoder: Box<dyn OtherEncoder>) -> usize {
         self.others.push(OtherPort {
             encoder,
@@ -80,7 +80,7 @@ impl<E: Engine> Bench<E> {
         self.others.len() - 1
     }
 
-    /// One of them, to make something wrong with it.
+    /// Such an encoder, to disturb it.
     pub fn other_mut(&mut self, number: usize) -> &mut dyn OtherEncoder {
         &mut *self.others[number].encoder
     }
@@ -90,13 +90,13 @@ impl<E: Engine> Bench<E> {
         self.others.iter().map(|port| &*port.encoder)
     }
 
-    /// Those of one kind.
+    /// Encoders of one type.
     pub fn others_as<T: OtherEncoder>(&self) -> impl Iterator<Item = &T> {
         self.others()
             .filter_map(|other| other.as_any().downcast_ref())
     }
 
-    /// The same, to make something wrong with them.
+    /// Encoders of one type, to disturb them.
     pub fn others_as_mut<T: OtherEncoder>(&mut self) -> impl Iterator<Item = &mut T> {
         let all = self.others.iter_mut();
         all.filter_map(|port| port.encoder.as_any_mut().downcast_mut())

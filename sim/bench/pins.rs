@@ -1,4 +1,4 @@
-//! The ports of a design that a bench knows by name.
+//! The ports of a design that the bench uses.
 
 use rtl_design::engine::{Port, PortId};
 
@@ -13,9 +13,9 @@ pub struct PinNames {
     pub data_oe: String,
     /// DATA input.
     pub data_i: String,
-    /// HIGH in the cycle after which the design takes a sample of DATA. Not every design has it.
+    /// HIGH in the cycle after which the design samples DATA; optional.
     pub sample_strobe: String,
-    /// With that: the sample is the one at the clock edge, not half a cycle before. Only designs with double edge need it.
+    /// With that: the sample is at the clock edge, not half a cycle before. Only for designs with double edge.
     pub sample_second: String,
 }
 
@@ -44,7 +44,7 @@ impl PinNames {
         }
     }
 
-    /// Pins of a T-format receiver; there is no clock on its line.
+    /// Pins of a T-format receiver, whose line has no clock.
     pub fn receiver() -> Self {
         Self {
             data_o: "encoder_data_o".into(),
@@ -55,12 +55,12 @@ impl PinNames {
     }
 }
 
-/// The port called `name`, if there is one.
+/// The port called `name`, if the design has it.
 pub(super) fn find(ports: &[Port], name: &str) -> Option<PortId> {
     ports.iter().position(|p| p.name == name).map(PortId)
 }
 
-/// The DATA pins of a port, as [`PinNames`] names them.
+/// The DATA pins of a port, according to [`PinNames`].
 #[derive(Clone)]
 pub(super) struct DataPins {
     pub(super) data_o: PortId,
@@ -71,14 +71,14 @@ pub(super) struct DataPins {
 /// The port called `name`.
 ///
 /// # Panics
-/// If the design does not have it: names are written in a bench, not typed by a user.
+/// If the design does not have it: benches, not users, choose these names.
 fn pin(ports: &[Port], name: &str) -> PortId {
     find(ports, name).unwrap_or_else(|| panic!("the design has no port {name}"))
 }
 
 impl DataPins {
     /// # Panics
-    /// If the design does not have one of them.
+    /// If the design lacks one of them.
     pub(super) fn find(names: &PinNames, ports: &[Port]) -> Self {
         Self {
             data_o: pin(ports, &names.data_o),
@@ -88,7 +88,7 @@ impl DataPins {
     }
 }
 
-/// The pins of one EnDat port, as [`PinNames`] names them.
+/// The pins of one EnDat port, according to [`PinNames`].
 #[derive(Clone)]
 pub(super) struct Pins {
     pub(super) clock: PortId,
@@ -99,7 +99,7 @@ pub(super) struct Pins {
 
 impl Pins {
     /// # Panics
-    /// If the design does not have clock or DATA.
+    /// If the design has no clock or DATA.
     pub(super) fn find(names: &PinNames, ports: &[Port]) -> Self {
         Self {
             clock: pin(ports, &names.clock),
@@ -110,7 +110,7 @@ impl Pins {
     }
 }
 
-/// Inputs that the bench drives by itself, where the design has them.
+/// Inputs that the bench drives, if the design has them.
 #[derive(Clone)]
 pub(super) struct TimeBase {
     pub(super) tick_us: Option<PortId>,

@@ -1,4 +1,4 @@
-//! What the bench keeps of a design's ports.
+//! Recordings of a design's ports.
 
 use super::pins::find;
 use crate::Time;
@@ -10,23 +10,23 @@ use rtl_design::engine::{Engine, Port, PortId};
 pub struct ChannelResult {
     /// Cycle in which the result strobe was HIGH.
     pub cycle: u64,
-    /// Its time.
+    /// Time of that cycle.
     pub time: Time,
     /// The last good position.
     pub position: u64,
-    /// There has been a good position.
+    /// A good position is available.
     pub position_valid: bool,
-    /// It is of this frame.
+    /// The position belongs to this frame.
     pub fresh: bool,
     /// Number of the result.
     pub sequence: u64,
-    /// Time stamp of the first falling clock edge of the frame that the position is of.
+    /// Time stamp of the first falling clock edge of the position's frame.
     pub first_fall_timestamp: u64,
     /// Age of the position.
     pub age_us: u64,
     /// Primary cause, 0 = none.
     pub cause: u64,
-    /// The cause that took its place after the result was out (DATA that does not fall).
+    /// The cause that replaced it after the result (DATA that does not fall).
     pub late_cause: Option<u64>,
     /// Raw flags.
     pub flags: u64,
@@ -41,18 +41,18 @@ pub struct ChannelResult {
 }
 
 impl ChannelResult {
-    /// The cause in the end: the late one if there is one.
+    /// The final cause: the late one, if any.
     pub fn last_cause(&self) -> u64 {
         self.late_cause.unwrap_or(self.cause)
     }
 
-    /// Name of the cause in the end.
+    /// Name of the final cause.
     pub fn cause_name(&self) -> &'static str {
         cause::name(self.last_cause())
     }
 }
 
-/// Ports of a result; those that the design does not have read as 0.
+/// Ports of a result; missing ports read 0.
 #[derive(Clone)]
 pub(super) struct ResultPorts {
     strobe: PortId,
@@ -60,7 +60,7 @@ pub(super) struct ResultPorts {
     fields: [Option<PortId>; 12],
 }
 
-/// Place of the cause in the list of fields.
+/// Index of the cause in the list of fields.
 const CAUSE: usize = 6;
 
 impl ResultPorts {
@@ -93,7 +93,7 @@ impl ResultPorts {
         self.strobe
     }
 
-    /// Where the cause is.
+    /// Port of the cause.
     pub(super) fn cause_port(&self) -> Option<PortId> {
         self.fields[CAUSE]
     }
@@ -103,12 +103,12 @@ impl ResultPorts {
         self.cause_bits
     }
 
-    /// The cause as it stands now; `get` reads a port.
+    /// The current cause; `get` reads a port.
     pub(super) fn cause(&self, mut get: impl FnMut(PortId) -> u128) -> u64 {
         self.fields[CAUSE].map_or(0, |id| get(id) as u64)
     }
 
-    /// The result that stands at the ports; `get` reads one.
+    /// The current result at the ports; `get` reads one.
     pub(super) fn result(
         &self,
         mut get: impl FnMut(PortId) -> u128,
@@ -172,12 +172,12 @@ impl Watched {
         &self.name
     }
 
-    /// Its width in bits.
+    /// Width in bits.
     pub fn width_bits(&self) -> u32 {
         self.width_bits
     }
 
-    /// Its changes; a value holds from the system clock edge at its time.
+    /// Changes; a value holds from the system clock edge at its time.
     pub fn changes(&self) -> &[(Time, u128)] {
         &self.changes
     }
@@ -190,7 +190,7 @@ pub struct Cycles {
     pub ports: Vec<Port>,
     /// One row for each cycle.
     pub rows: Vec<Vec<u128>>,
-    /// One row for each cycle of the values in its middle, just before the falling edge; empty if that edge means nothing.
+    /// The values in the middle of each cycle, just before the falling edge; empty if that edge is not used.
     pub middle: Vec<Vec<u128>>,
 }
 

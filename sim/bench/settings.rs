@@ -5,35 +5,35 @@ use endat_hdl::protocol::ModeCommand;
 
 /// Configuration of a channel; the fields have the names of its ports.
 ///
-/// A design may fix some of them when it is made and have no port for them (tR, the abort time): the bench then
-/// leaves them alone, and whoever makes the design passes them on.
+/// Some of them may be fixed in a design, without a port (tR, the abort time). The bench then
+/// ignores them, and the caller passes them to the design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelSettings {
     /// EnDat clock period; if odd, the HIGH phase is one cycle longer.
     pub period_cycles: u64,
-    /// The first LOW phase is half a period and this.
+    /// Extension of the first LOW phase beyond half a period.
     pub first_low_extra_cycles: u64,
     /// Mode command.
     pub command: u8,
     /// Width of the position.
     pub position_bits: u32,
-    /// DATA must keep its level this long to be believed; 0 = no filter.
+    /// DATA must be stable for this long to count; 0 = no filter.
     pub filter_cycles: u64,
-    /// And half a cycle more; with `double_edge`.
+    /// Half a cycle more; with `double_edge`.
     pub filter_half: bool,
-    /// Where the phase comes from, see [`endat_hdl::endat::line_delay::mode`].
+    /// Source of the phase, see [`endat_hdl::endat::line_delay::mode`].
     pub phase_mode: u64,
     /// The delay in mode `fixed`, in sixteenths of a cycle.
     pub fixed_delay: u64,
-    /// Each sample is the majority of itself and its neighbours.
+    /// Each sample is the majority of itself and its two neighbours.
     pub majority: bool,
-    /// The start edge may be this much before or after its expected phase.
+    /// Tolerance of the start edge around its expected phase.
     pub start_window_cycles: u64,
     /// Longest wait for the start bit, from the end of the turnaround.
     pub start_timeout_us: u64,
-    /// DATA must fall this soon after the frame.
+    /// DATA must fall within this time after the frame.
     pub recovery_limit_cycles: u64,
-    /// DATA must have been LOW this long before a frame (tR).
+    /// DATA must have been LOW for this time before a frame (tR).
     pub ready_low_cycles: u64,
     /// Quiet time after an aborted frame.
     pub abort_us: u64,
@@ -100,7 +100,7 @@ impl ChannelSettings {
     }
 }
 
-/// Added to the longest recovery time: cable, transceivers and the encoder's own tolerance.
+/// Added to the longest recovery time: for cable, transceivers and the encoder's tolerance.
 const RECOVERY_MARGIN_NS: u64 = 5_000;
 
 #[cfg(test)]

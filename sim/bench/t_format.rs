@@ -1,4 +1,4 @@
-//! One T-format encoder at the end of one line.
+//! A T-format encoder with its line.
 
 use super::other::OtherEncoder;
 use super::{Bench, PinNames};
@@ -16,30 +16,30 @@ use std::sync::Arc;
 /// Single-turn and multi-turn position at a time.
 pub type TFormatMotion = Arc<dyn Fn(Time) -> (u32, u32) + Send + Sync>;
 
-/// A line with its encoder; each way takes the same time. It is HIGH while nobody drives it, and the receiver does not hear itself.
+/// A line with its encoder; both directions have the same delay. The idle line is HIGH, and the receiver does not receive its own output.
 pub struct TFormatLink {
     encoder: Encoder,
     delay: Time,
     motion: Option<TFormatMotion>,
     to_encoder: VecDeque<(Time, Drive)>,
     to_receiver: VecDeque<(Time, bool)>,
-    /// What the receiver does, at its pins.
+    /// Drive of the receiver, at its pins.
     receiver: Drive,
-    /// When the encoder heard the last change.
+    /// Time of the last change at the encoder.
     heard: Option<Time>,
-    /// What the encoder does, at its pins.
+    /// Drive of the encoder, at its pins.
     sent: bool,
     data: bool,
-    /// Nobody is plugged in.
+    /// No encoder is connected.
     is_open: bool,
-    /// What the receiver does, at the encoder's pins.
+    /// Drive of the receiver, at the encoder's pins.
     arrived: Drive,
-    /// The line at the encoder's pins, if it is kept: changes with their times.
+    /// The line at the encoder's pins, if recorded: changes with their times.
     trace: Option<Vec<(Time, bool)>>,
 }
 
 impl TFormatLink {
-    /// An encoder `delay` away.
+    /// An encoder with the line delay `delay`.
     pub fn new(config: EncoderConfig, delay: Time) -> Self {
         Self {
             encoder: Encoder::new(config),
@@ -57,12 +57,12 @@ impl TFormatLink {
         }
     }
 
-    /// Its shaft moves like this; it latches with the start bit of a request.
+    /// Sets the motion of the shaft; the encoder latches with the start bit of a request.
     pub fn set_motion(&mut self, motion: TFormatMotion) {
         self.motion = Some(motion);
     }
 
-    /// From now on every change of the line at the encoder is kept.
+    /// From now on every change of the line at the encoder is recorded.
     pub fn record(&mut self) {
         self.trace = Some(vec![(0, true)]);
     }
@@ -81,7 +81,7 @@ impl TFormatLink {
         self.is_open = true;
     }
 
-    /// Puts it in again.
+    /// Plugs it in again.
     pub fn plug(&mut self) {
         self.is_open = false;
     }
@@ -91,12 +91,12 @@ impl TFormatLink {
         &self.encoder
     }
 
-    /// The encoder, to make something wrong with it, or to move its shaft.
+    /// The encoder, to disturb it, or to move its shaft.
     pub fn encoder_mut(&mut self) -> &mut Encoder {
         &mut self.encoder
     }
 
-    /// What the encoder does to the line goes on its way.
+    /// Puts the encoder's output on the line.
     fn listen(&mut self, time: Time) {
         let level = self.encoder.output() != Drive::Low;
         if level != self.sent {
@@ -137,7 +137,7 @@ impl OtherEncoder for TFormatLink {
 
     fn advance_to(&mut self, time: Time) -> bool {
         let at = |event: Option<Time>| event.unwrap_or(Time::MAX);
-        // What was changed from outside acts at once.
+        // A change from outside takes effect at once.
         self.listen(time);
         loop {
             let heard = at(self.to_encoder.front().map(|(t, _)| *t));
@@ -185,7 +185,7 @@ impl OtherEncoder for TFormatLink {
 }
 
 impl<E: Engine> Bench<E> {
-    /// Puts a T-format encoder on a set of pins; gives its number among those.
+    /// Adds a T-format encoder to a set of pins; returns its number among these.
     pub fn add_t_format(&mut self, names: &PinNames, link: TFormatLink) -> usize {
         let number = self.t_format_count();
         self.add_other(names, Box::new(link));
@@ -195,15 +195,15 @@ impl<E: Engine> Bench<E> {
     /// T-format encoder `index`.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the bench has fewer of them.
     pub fn t_format(&self, index: usize) -> &TFormatLink {
         (self.others_as().nth(index)).expect("a T-format encoder of that number")
     }
 
-    /// The same, to make something wrong with it.
+    /// T-format encoder `index`, to disturb it.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the bench has fewer of them.
     pub fn t_format_mut(&mut self, index: usize) -> &mut TFormatLink {
         (self.others_as_mut().nth(index)).expect("a T-format encoder of that number")
     }

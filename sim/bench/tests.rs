@@ -133,7 +133,7 @@ fn one_pulse_more_or_less_is_noticed() {
         b.run_for(20 * US);
         b.violations(0).first().map(|v| v.1)
     };
-    // The start bit is launched by edge 25 (2 us + 24 T = 5 us = tcal) and has 32 bits behind it.
+    // The start bit is launched by edge 25 (2 us + 24 T = 5 us = tcal), and 32 bits follow it.
     assert_eq!(run(1), Some(Violation::TooManyPulses { expected: 58 }));
     assert_eq!(
         run(-1),
@@ -319,7 +319,7 @@ fn recorded_cycles_replay_the_run() {
     good_frame(&mut b);
     let cycles = b.cycles().unwrap().clone();
     let mut again = TestReceiver::new(SYSTEM_HZ);
-    // The bench had reset the receiver, which does nothing here but count cycles.
+    // The bench has reset the receiver, which here only counts cycles.
     for row in &cycles.rows {
         for (i, port) in cycles.ports.iter().enumerate() {
             if port.is_input {

@@ -1,4 +1,4 @@
-//! A host's end of a serial line at the pins `uart_rx_i` and `uart_tx_o` of a card, in system clock cycles.
+//! Host end of a serial line at the pins `uart_rx_i` and `uart_tx_o` of a card, in system clock cycles.
 
 use super::Bench;
 use rtl_design::engine::{Engine, PortId};
@@ -17,7 +17,7 @@ pub struct Uart {
     shift: u16,
     bits_left: u64,
     next_bit: u64,
-    /// Cycle of the next sample of the byte that is being received, and how many samples it had.
+    /// Cycle of the next sample of the byte being received, and the number of its samples.
     sample_at: Option<u64>,
     samples: u64,
     byte: u16,
@@ -52,12 +52,12 @@ impl Uart {
         self.sending.extend(bytes);
     }
 
-    /// Bytes that the card has not got yet.
+    /// Bytes not sent to the card yet.
     pub fn unsent(&self) -> usize {
         self.sending.len() + usize::from(self.bits_left > 0)
     }
 
-    /// Drops what is queued; the byte on the line is finished.
+    /// Drops the queue; the byte on the line is finished.
     pub fn forget(&mut self) {
         self.sending.clear();
     }
@@ -99,7 +99,7 @@ impl Uart {
                 self.sample_at = Some(at + self.bit_cycles);
                 if self.samples == BITS {
                     self.sample_at = None;
-                    // Without a stop bit it is no byte.
+                    // A byte without stop bit is dropped.
                     if self.byte >> 9 == 1 {
                         self.received.push_back((self.byte >> 1) as u8);
                     }

@@ -1,4 +1,4 @@
-//! One case: a channel, an encoder and a line, and what a sound run of them looks like.
+//! One case: a channel, an encoder and a line, and the checks for a fault-free run.
 
 use crate::{
     bench::{Bench, ChannelResult, ChannelSettings, Link},
@@ -20,20 +20,20 @@ use rust_hdl::prelude::Block;
 
 /// From the pin to the register that takes a sample, without filter.
 pub const SAMPLE_LATENCY_CYCLES: u64 = 3;
-/// Longer than any frame with its time-outs.
+/// More than any frame with its time-outs.
 const FRAME_LIMIT: Time = 5 * MS;
 /// Cycles in reset, and after it, before the first trigger.
 pub(super) const RESET_CYCLES: u64 = 8;
 
-/// A channel with its encoder. It is reset, and then triggered whenever it is idle, until it has delivered its frames; the first
+/// A channel with its encoder. After reset it is triggered whenever it is idle, until it has delivered its frames; the first
 /// one measures the delay.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What it is, in a few words.
+    /// Short description.
     pub title: String,
     /// System clock in hertz.
     pub system_hz: u64,
-    /// What the channel has.
+    /// Features of the channel.
     pub features: Features,
     /// Configuration of the channel.
     pub settings: ChannelSettings,
@@ -45,7 +45,7 @@ pub struct Case {
     pub frames: usize,
 }
 
-/// The parts of a case that are fixed when its design is made.
+/// The parts of a case that are fixed in its design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct DesignKey {
     pub system_hz: u64,
@@ -70,23 +70,23 @@ impl DesignKey {
     }
 }
 
-/// What a case left behind.
+/// Records of a case.
 #[derive(Clone, Debug)]
 pub struct Traces<'a> {
-    /// What the channel delivered.
+    /// Results of the channel.
     pub results: &'a [ChannelResult],
-    /// What the encoder saw.
+    /// Frames, as seen by the encoder.
     pub frames: &'a [FrameLog],
-    /// What the encoder found wrong.
+    /// Violations noted by the encoder.
     pub violations: &'a [(Time, Violation)],
-    /// Both ends driving at once.
+    /// Times when both ends drove DATA.
     pub conflicts: Vec<Conflict>,
     /// The samples of DATA that the channel took.
     pub samples: &'a [Sample],
 }
 
 impl<'a> Traces<'a> {
-    /// What a bench of one channel has.
+    /// Records of the bench of one channel.
     pub fn of<E: Engine>(bench: &'a Bench<E>) -> Self {
         Self {
             results: bench.results(),
@@ -97,10 +97,9 @@ impl<'a> Traces<'a> {
         }
     }
 
-    /// The frames behind those that measured the delay for the first result: one for each result, if all is well.
-    ///
+    /// The frames after those that measured the delay for the first result: one for each result in a fault-free run.
     /// # Errors
-    /// A frame before them that has not measured.
+    /// An earlier frame that did not measure.
     pub fn positions(&self) -> Result<&'a [FrameLog], String> {
         let measuring = self.frames.len().saturating_sub(self.results.len());
         let (first, frames) = self.frames.split_at(measuring);
@@ -126,10 +125,10 @@ impl Case {
         }
     }
 
-    /// The design that the case runs on.
+    /// Design of the case.
     ///
     /// # Errors
-    /// If the channel cannot be elaborated: a fault of this program.
+    /// If the channel cannot be elaborated: a bug in this program.
     pub fn design(&self) -> Result<Design, ElaborateError> {
         self.key().design()
     }
@@ -149,7 +148,7 @@ impl Case {
         2 * SAMPLE_LATENCY_CYCLES + filter + majority
     }
 
-    /// Frames at the calibration clock, with which a channel begins.
+    /// Number of first frames that run at the calibration clock.
     pub fn calibration_frames(&self) -> usize {
         match self.features.alignment {
             true if self.settings.phase_mode == mode::FIXED => 0,
@@ -158,7 +157,7 @@ impl Case {
         }
     }
 
-    /// The longest that the case may take, in system clock cycles.
+    /// Upper limit of the case in system clock cycles.
     pub(super) fn limit_cycles(&self) -> u64 {
         let limit = u128::from(FRAME_LIMIT) * (self.frames as u128 + 1);
         (limit * u128::from(self.system_hz) / 1_000_000_000_000) as u64
@@ -170,7 +169,7 @@ impl Case {
         Some(command.answer_bits(self.settings.position_bits))
     }
 
-    /// Runs the case alone, on an engine for [`Case::design`], keeping what waveforms and drawings need.
+    /// Runs the case alone, on an engine for [`Case::design`]; `is_recorded` keeps the data for waveforms and drawings.
     pub fn run_alone<E: Engine>(&self, engine: E, is_recorded: bool) -> Bench<E> {
         let mut bench = self.bench(engine);
         if is_recorded {
@@ -185,7 +184,7 @@ impl Case {
         bench
     }
 
-    /// The bench of the case, before anything is done on it.
+    /// The bench of the case in its initial state.
     pub fn bench<E: Engine>(&self, engine: E) -> Bench<E> {
         let pins = crate::bench::PinNames::channel();
         let mut bench = Bench::new(engine, self.system_hz, vec![(pins, self.link())]);
@@ -196,7 +195,7 @@ impl Case {
         bench
     }
 
-    /// Powers the bench up and triggers until all frames are there.
+    /// Powers the bench up and triggers until all frames are complete.
     pub fn drive<E: Engine>(&self, bench: &mut Bench<E>) {
         bench.configure(&self.settings);
         bench.power_up();
@@ -214,10 +213,10 @@ impl Case {
         }
     }
 
-    /// Whether all frames were good and by the rules; if not, what was wrong first.
+    /// Checks that all frames were good and followed the rules.
     ///
     /// # Errors
-    /// What was wrong.
+    /// The first fault.
     pub fn check(&self, traces: &Traces<'_>) -> Result<(), String> {
         if let Some((time, violation)) = traces.violations.first() {
             return Err(format!("{violation}, at {:.3} us", *time as f64 / 1e6));
@@ -228,7 +227,7 @@ impl Case {
                 conflict.from as f64 / 1e6
             ));
         }
-        // The first position comes behind those that measure, unless the delay was known before.
+        // The first position follows the measuring frames, unless the delay was known before.
         let counts = (traces.results.len(), traces.frames.len());
         let measuring = counts.1.saturating_sub(counts.0);
         if counts.0 != self.frames || ![0, self.calibration_frames()].contains(&measuring) {
@@ -289,7 +288,7 @@ impl Case {
         }
     }
 
-    /// Every sample is of the encoder's LOW, of the answer bits one after the other, or of the HIGH after them.
+    /// Checks that every sample belongs to the encoder's LOW, to the answer bits in order, or to the HIGH after them.
     fn check_samples(&self, samples: &[Sample]) -> Result<(), String> {
         let mut next = 0;
         for sample in samples {

@@ -10,13 +10,13 @@ use std::sync::OnceLock;
 
 /// A quarter of a bit.
 const QUARTER: Time = 62_500;
-/// From [`LEAD_PS`] before the trigger to behind the longest answer.
+/// From [`LEAD_PS`] before the trigger to after the longest answer.
 const QUARTERS: u64 = 300;
-/// What lasts until the frame is over: longer than the longest recovery time.
+/// Longer than the rest of a frame with its longest recovery time.
 const LONG: Time = 60 * US;
 /// Recovery times of the encoder.
 const RECOVERIES: [Time; 6] = [1_250 * NS, 2 * US, 5 * US, 10 * US, 25 * US, 30 * US];
-/// 000111 has none that are shorter.
+/// Shortest recovery time of 000111.
 const LONG_RECOVERY: Time = 10 * US;
 /// Cables in metres.
 const CABLES_M: [f64; 3] = [1.0, 20.0, 100.0];
@@ -48,7 +48,7 @@ impl Faults {
     /// Faults at every `step`-th quarter of a bit.
     ///
     /// # Errors
-    /// If the design of a port cannot be made.
+    /// If the design of a port cannot be elaborated.
     pub fn new(ports: &[Port], step: u64, seed: u64) -> Result<Self, CampaignError> {
         let (mut groups, mut digested) = (vec![], 0);
         for port in ports {
@@ -116,7 +116,7 @@ impl Campaign for Faults {
             let (moment, number) = (number % self.moments(), number / self.moments());
             let kind = FaultKind::ALL[(number / 2) as usize];
             let at = moment * self.step * QUARTER;
-            // On in the frame and off behind it, or on before it and off in it.
+            // On in the frame and off after it, or on before it and off in it.
             let (from, until) = match number % 2 {
                 0 => (at, LEAD_PS + LONG),
                 _ => (0, at.max(QUARTER)),

@@ -1,5 +1,5 @@
-//! Frames that are spoilt in every way: random answers, jitter, noise, glitches, settings that change in the frame; and every word there is
-//! of a narrow encoder, against a predicate from outside.
+//! Frames corrupted in many ways: random answers, jitter, noise, glitches, settings that change in the frame. Also every word
+//! of a narrow encoder, compared with an independent predicate.
 
 use super::port::{Conditions, FrameKind, Mishap, Port, Ready};
 use super::work::{digest, hash, Campaign};
@@ -14,29 +14,29 @@ use rtl_design::engine::Lanes;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Longer than the frame and all before and after it.
+/// Longer than the frame with its lead and recovery.
 const LONG: Time = 60 * US;
-/// Widest encoder of which every word is tried.
+/// Widest encoder for which every word is tried.
 pub const WIDEST_BITS: u32 = 13;
 /// Cycles of a frame in which a setting changes.
 const SETTING_CYCLES: u64 = 500;
 
-/// How a frame is spoilt.
+/// Kind of corruption.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Spoilt {
-    /// Random bits behind the start bit.
+    /// Random bits after the start bit.
     Word,
     /// Two bits inverted.
     TwoBits,
-    /// Uniform jitter of every edge, up to so many nanoseconds.
+    /// Uniform jitter of every edge, up to this many nanoseconds.
     Jitter(u64),
-    /// From a random moment on, for a random while.
+    /// A line fault from a random time on, for a random duration.
     Line(FaultKind),
-    /// This input has a random value from a random moment to the end of the frame.
+    /// This input has a random value from a random time to the end of the frame.
     Setting(&'static str, u64),
 }
 
-/// How frames are spoilt.
+/// All kinds of corruption.
 const WAYS: [Spoilt; 15] = [
     Spoilt::Word,
     Spoilt::TwoBits,
@@ -108,7 +108,7 @@ struct Group {
     ready: usize,
 }
 
-/// A port that is about to begin a frame, made when it is needed first.
+/// A port that is about to begin a frame, created on first use.
 struct Lazy {
     port: Port,
     kind: FrameKind,
@@ -124,7 +124,7 @@ impl Lazy {
     }
 }
 
-/// The campaign of spoilt frames.
+/// The campaign of corrupted frames.
 pub struct Garbage {
     ready: Vec<Lazy>,
     groups: Vec<Group>,
@@ -133,10 +133,10 @@ pub struct Garbage {
 }
 
 impl Garbage {
-    /// So many spoilt frames.
+    /// `cases` corrupted frames.
     ///
     /// # Errors
-    /// If the design of a port cannot be made.
+    /// If the design of a port cannot be elaborated.
     pub fn new(ports: &[Port], cases: u64, seed: u64) -> Result<Self, CampaignError> {
         let (mut ready, mut groups, mut digested) = (vec![], vec![], 0);
         for port in ports {
@@ -216,7 +216,7 @@ impl Campaign for Garbage {
     }
 }
 
-/// The position that must be taken from an answer, if it must: of its bits from F1 to the last one of the CRC, and whether it has an F2.
+/// The position that must be accepted from an answer, if any; arguments: its bits from F1 to the last one of the CRC, and whether it has an F2.
 pub type Predicate = fn(&[bool], bool) -> Option<u64>;
 
 /// Every word that an encoder of each width up to [`WIDEST_BITS`] can send, with every CRC and error bit.
@@ -227,10 +227,10 @@ pub struct AcceptSet {
 }
 
 impl AcceptSet {
-    /// Of the widths up to so many bits.
+    /// The widths up to `widest_bits`.
     ///
     /// # Errors
-    /// If the design of the port cannot be made.
+    /// If the design of the port cannot be elaborated.
     pub fn new(widest_bits: u32, predicate: Predicate) -> Result<Self, CampaignError> {
         let port = Port::Position;
         let engine = port.engine()?;
@@ -272,7 +272,7 @@ impl Campaign for AcceptSet {
 
     fn run(&self, group: usize, cases: Range<u64>) -> Tally {
         let (lazy, f2) = &self.ready[group];
-        // The start bit stays.
+        // The start bit is unchanged.
         let mishap = |mask: u64| Mishap::Answer(Defect::FlipBits(u128::from(mask) << 1), 1);
         let mishaps: Vec<Mishap> = cases.map(mishap).collect();
         let mut tally = Tally::default();

@@ -11,7 +11,7 @@ use crate::{
 use endat_hdl::endat::{channel::Features, timing};
 use endat_hdl::protocol::{ModeCommand, POSITION_BITS};
 
-/// System clock and EnDat clock in hertz, that every width and cable is tried at.
+/// System clock and EnDat clock in hertz, for every width and cable.
 pub const RATES: [(u64, u64); 10] = [
     (100_000_000, 100_000),
     (100_000_000, 200_000),
@@ -24,13 +24,13 @@ pub const RATES: [(u64, u64); 10] = [
     (100_000_000, 12_500_000),
     (128_000_000, 16_000_000),
 ];
-/// The cables that every width and rate is tried on, in metres.
+/// Cables for every width and rate, in metres.
 pub const CABLES_M: [f64; 4] = [0.0, 1.0, 20.0, 100.0];
-/// Quiet time after an aborted frame: longer than the encoder's own time-out, short enough to be simulated.
+/// Quiet time after an aborted frame: longer than the encoder's time-out, short enough for simulation.
 pub const ABORT_US: u64 = 50;
 
 impl Case {
-    /// A sound encoder on a sound cable, with fitting settings. The recovery time is short, where that is allowed.
+    /// A good encoder on a good cable, with suitable settings. The recovery time is short, if allowed.
     pub fn new(
         (system_hz, endat_hz): (u64, u64),
         command: ModeCommand,
@@ -83,7 +83,7 @@ pub fn random(count: usize, seed: u64) -> Vec<Case> {
     (0..count).map(|_| Story::random(&mut rng).case()).collect()
 }
 
-/// A case that is different in everything, as parts of what the rate allows: every story is within the limits of line, encoder
+/// A random case, with values relative to the range of its rate. Every story is within the limits of line, encoder
 /// and core, and must give good frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Story {
@@ -95,7 +95,7 @@ pub struct Story {
     pub position_bits: u32,
     /// Cable in metres.
     pub cable_m: f64,
-    /// Its delay.
+    /// Delay of the cable.
     pub ns_per_m: f64,
     /// Delay of driver and receiver.
     pub transceivers: Time,
@@ -103,11 +103,11 @@ pub struct Story {
     pub clock_to_data: Time,
     /// Calculation time.
     pub tcal: Time,
-    /// How much longer it may be in a frame.
+    /// Largest random addition to it in a frame.
     pub tcal_jitter: Time,
     /// Jitter of every edge, 0 to 1.
     pub jitter: f64,
-    /// How much later falling edges are, -1 to 1.
+    /// Delay of falling edges against rising ones, -1 to 1.
     pub distortion: f64,
     /// Input filter, 0 to 1.
     pub filter: f64,
@@ -119,7 +119,7 @@ pub struct Story {
 
 impl Story {
     fn random(rng: &mut Rng) -> Self {
-        // A part between 0 and 1.
+        // A fraction between 0 and 1.
         let part = |rng: &mut Rng| (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
         Self {
             rates: rng.in_range(0, RATES.len() as u64 - 1) as usize,
@@ -139,7 +139,7 @@ impl Story {
         }
     }
 
-    /// The case.
+    /// Makes the case.
     pub fn case(&self) -> Case {
         let rates = RATES[self.rates];
         let command = ModeCommand::POSITION[usize::from(self.f2)];
@@ -149,11 +149,11 @@ impl Story {
         let cycle = 1_000_000 * US / rates.0;
         let period = case.settings.period_cycles;
         let half = period / 2;
-        // The frame that measures the delay has a period of its own.
+        // The frame that measures the delay has another period.
         let shortest = period.min(timing::period_cycles(timing::CALIBRATION_HZ, rates.0));
         // A bit is sampled in the middle, to a cycle and a half: tracking, synchroniser, odd period. The rest of half a bit
-        // is for distortion, jitter of two edges, and jitter of the period that the encoder compares with, as far as it
-        // takes pulses: a tenth of a period, of which an odd period takes half a cycle.
+        // is for distortion, jitter of two edges, and period jitter. The encoder tolerates pulses within a tenth of a period,
+        // of which an odd period uses half a cycle.
         let pulses = shortest * cycle / 10 - period % 2 * cycle / 2;
         let room = (shortest / 2 * cycle - 3 * cycle / 2).min(pulses);
         let jitter = (self.jitter * 0.2 * room as f64) as Time;

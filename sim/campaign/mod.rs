@@ -1,4 +1,4 @@
-//! Campaigns: thousands of cases side by side, each with its own channel settings, encoder and line.
+//! Campaigns: thousands of cases in parallel, each with separate channel settings, encoder and line.
 
 mod case;
 pub mod faults;

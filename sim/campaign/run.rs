@@ -1,4 +1,4 @@
-//! Runs cases in lanes, on all processors. What comes out does not depend on how many of either there are.
+//! Runs cases in lanes, on all processors. The results do not depend on the numbers of lanes and processors.
 
 use super::case::{Case, DesignKey, Traces, RESET_CYCLES};
 use crate::bench::{LaneBench, PinNames};
@@ -9,14 +9,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 use std::{panic, thread};
 
-/// How a campaign is run.
+/// Options of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct RunOptions {
     /// Threads; 0 = one for each processor.
     pub threads: usize,
     /// Copies in one pass.
     pub lanes: LaneWords,
-    /// Look up and check every sample of DATA as well.
+    /// Evaluate and check every sample of DATA, too.
     pub samples: bool,
 }
 
@@ -30,18 +30,18 @@ impl Default for RunOptions {
     }
 }
 
-/// How one case went.
+/// Outcome of one case.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome<V> {
-    /// Results that were looked at.
+    /// Number of evaluated results.
     pub frames: usize,
-    /// System clock cycles that it took.
+    /// System clock cycles of the case.
     pub cycles: u64,
-    /// What the judge says.
+    /// Verdict of the judge.
     pub verdict: V,
 }
 
-/// Why a campaign cannot run: faults of this program.
+/// Reasons why a campaign cannot run: bugs in this program.
 #[derive(Debug, thiserror::Error)]
 pub enum CampaignError {
     /// The channel has no design.
@@ -58,7 +58,7 @@ struct Batch {
     cases: Vec<usize>,
 }
 
-/// Cases of one design side by side, those that take about as long together.
+/// Cases of one design together, grouped by similar duration.
 fn batches(cases: &[Case], lanes: usize) -> Vec<Batch> {
     let mut by_design: BTreeMap<DesignKey, Vec<usize>> = BTreeMap::new();
     for (index, case) in cases.iter().enumerate() {
@@ -76,16 +76,16 @@ fn batches(cases: &[Case], lanes: usize) -> Vec<Batch> {
             cases: chunk.to_vec(),
         }));
     }
-    // The longest first: the last ones to be taken are short.
+    // The longest first, so that the last batches are short.
     batches.reverse();
     batches
 }
 
-/// Runs all cases and has each judged (by [`Case::check`], for example); `progress` is told how many are done. Outcomes are in the order
+/// Runs and judges all cases (by [`Case::check`], for example); `progress` receives the number of finished cases. Outcomes are in the order
 /// of the cases.
 ///
 /// # Errors
-/// If the design of a case cannot be made.
+/// If the design of a case cannot be elaborated.
 pub fn run<V: Clone + Send>(
     cases: &[Case],
     options: RunOptions,
@@ -144,7 +144,7 @@ fn run_batch<V>(
     judge: &(impl Fn(&Case, &Traces<'_>) -> V + Sync),
 ) -> Vec<Outcome<V>> {
     let members: Vec<&Case> = batch.cases.iter().map(|i| &cases[*i]).collect();
-    // Lanes without a case of their own repeat the first one, untriggered.
+    // Unused lanes repeat the first case, without triggers.
     let case_of = |lane: usize| members.get(lane).copied().unwrap_or(members[0]);
     let links = (0..engine.lanes()).map(|lane| case_of(lane).link());
     let pins = (PinNames::channel(), links.collect());
@@ -162,7 +162,7 @@ fn run_batch<V>(
     let limit = members.iter().map(|c| c.limit_cycles()).max().unwrap_or(0);
     let mut ends: Vec<Option<u64>> = vec![None; members.len()];
     let words = bench.lanes() / 64;
-    // Lanes that want more results, lanes that run.
+    // Lanes that need more results, and running lanes.
     let mut wanting = vec![0u64; words];
     let mut running = vec![0u64; words];
     for lane in 0..members.len() {

@@ -1,34 +1,34 @@
-//! What a campaign found: how many cases of each class, and which part of which campaign that is.
+//! Result of a campaign: the number of cases in each class, and the evaluated part of the campaign.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// One kind of case and what became of it.
+/// A kind of case with its class.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Row {
-    /// What was tried.
+    /// Design.
     pub subject: String,
-    /// In which kind of frame, or with which fault.
+    /// Kind of frame or of fault.
     pub kind: String,
-    /// Where: the register, or the conditions.
+    /// Register, or conditions.
     pub place: String,
-    /// What became of it.
+    /// Class.
     pub class: String,
 }
 
-/// How many cases of each class.
+/// Number of cases in each class.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     rows: BTreeMap<Row, u64>,
 }
 
 impl Tally {
-    /// So many more cases of this class.
+    /// Adds `count` cases of this class.
     pub fn add(&mut self, row: Row, count: u64) {
         *self.rows.entry(row).or_default() += count;
     }
 
-    /// All that another one has.
+    /// Adds the counts of another tally.
     pub fn merge(&mut self, other: Tally) {
         for (row, count) in other.rows {
             self.add(row, count);
@@ -40,7 +40,7 @@ impl Tally {
         self.rows.iter().map(|(row, count)| (row, *count))
     }
 
-    /// Cases of the rows that are chosen.
+    /// Number of cases in the selected rows.
     pub fn count(&self, choose: impl Fn(&Row) -> bool) -> u64 {
         let chosen = self.rows().filter(|(row, _)| choose(row));
         chosen.map(|(_, count)| count).sum()
@@ -50,14 +50,14 @@ impl Tally {
 /// One of several equal parts of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Shard {
-    /// Its number, 1..=of.
+    /// Number of the part, 1..=of.
     pub index: u64,
-    /// How many there are.
+    /// Number of parts.
     pub of: u64,
 }
 
 impl Shard {
-    /// All of it.
+    /// The whole campaign.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
     /// The cases of this part of `count`.

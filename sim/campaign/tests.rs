@@ -1,7 +1,7 @@
 use super::*;
 use rtl_design::engine::{Compiled, LaneWords};
 
-/// A failing check shows what the lanes left behind.
+/// A failing check returns the records of the lanes.
 fn digest(traces: &Traces<'_>) -> Result<(), String> {
     Err(format!("{traces:?}"))
 }

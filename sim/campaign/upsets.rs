@@ -1,5 +1,5 @@
-//! Every flip-flop inverted at every moment of a frame: what the reader of the result sees, what the encoder sees, and how many triggers it
-//! takes until all is well again. A case is one flip in one frame.
+//! Every flip-flop inverted at every time of a frame: the effects for the reader and the encoder, and the number of triggers
+//! until everything is good again. A case is one flip in one frame.
 
 use super::port::{Conditions, Mishap, Port, Ready};
 use super::work::{digest, hash, Campaign};
@@ -8,17 +8,17 @@ use crate::rng::Rng;
 use rtl_design::engine::Lanes;
 use std::ops::Range;
 
-/// Which flips are tried.
+/// Selection of flips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Draw {
-    /// Every flip-flop, each at so many moments of each kind of frame: one anywhere in each equal part of the frame.
+    /// Every flip-flop, at this many times of each kind of frame: one at random in each equal part of the frame.
     Grid {
-        /// How many.
+        /// Number of times.
         moments: u64,
     },
-    /// So many, drawn at random.
+    /// A number of random flips.
     Random {
-        /// How many.
+        /// Number of cases.
         cases: u64,
     },
 }
@@ -31,7 +31,7 @@ pub struct Flops {
     pub names: Vec<String>,
 }
 
-/// Whether a hierarchical name begins with one of those in `only`, which stand between commas; nothing asks for all.
+/// True if a hierarchical name begins with one of the comma-separated names in `only`; an empty list selects all.
 pub fn is_asked(name: &str, only: &str) -> bool {
     let mut begins = only
         .split(',')
@@ -41,12 +41,12 @@ pub fn is_asked(name: &str, only: &str) -> bool {
 }
 
 impl Flops {
-    /// Those of registers [that are asked for](is_asked).
+    /// Flip-flops of registers [selected by name](is_asked).
     pub fn new(engine: &Lanes, only: &str) -> Self {
         Self::filtered(engine, |name| is_asked(name, only))
     }
 
-    /// Those of registers whose names are chosen.
+    /// Flip-flops of registers selected by a predicate.
     pub fn filtered(engine: &Lanes, choose: impl Fn(&str) -> bool) -> Self {
         let all: Vec<&str> = engine.nets().collect();
         let (mut bits, mut names) = (vec![], vec![]);
@@ -59,7 +59,7 @@ impl Flops {
         Self { bits, names }
     }
 
-    /// How many cases there are.
+    /// Number of cases.
     pub fn cases(&self, draw: Draw) -> u64 {
         match draw {
             Draw::Grid { moments } => self.bits.len() as u64 * moments,
@@ -68,12 +68,12 @@ impl Flops {
         }
     }
 
-    /// The case with this number: which flip-flop (an index), and when within `span` cycles. `label` tells groups apart.
+    /// The case with this number: flip-flop (an index), and cycle within `span`. `label` distinguishes groups.
     pub fn case(&self, draw: Draw, seed: u64, label: &str, span: u64, number: u64) -> (usize, u64) {
         match draw {
             Draw::Grid { moments } => {
                 let (index, moment) = ((number / moments) as usize, number % moments);
-                // The moment belongs to the flip-flop: it is the same in a campaign of a few registers.
+                // The time depends on the flip-flop only: it is the same in a campaign with few registers.
                 let what = format!("{label} {} {}", self.names[index], self.bits[index].1);
                 let mut rng = Rng::new(hash(&what) ^ seed ^ moment.rotate_left(32));
                 let from = span * moment / moments;
@@ -105,10 +105,10 @@ pub struct Upsets {
 }
 
 impl Upsets {
-    /// Upsets of these ports, of registers [that are asked for](is_asked).
+    /// Upsets of these ports, in registers [selected by name](is_asked).
     ///
     /// # Errors
-    /// If the design of a port cannot be made.
+    /// If the design of a port cannot be elaborated.
     pub fn new(ports: &[Port], draw: Draw, seed: u64, only: &str) -> Result<Self, CampaignError> {
         let (mut groups, mut digested) = (vec![], 0);
         for port in ports {
@@ -124,7 +124,7 @@ impl Upsets {
         }
         let count = groups.len() as u64;
         for (index, group) in groups.iter_mut().enumerate() {
-            // At random, an equal share of each kind of frame.
+            // Random cases, an equal share of each kind of frame.
             group.cases = group.flops.cases(match draw {
                 Draw::Random { cases } => Draw::Random {
                     cases: cases / count + u64::from((index as u64) < cases % count),

@@ -1,4 +1,4 @@
-//! Numbered cases on all processors: batches of one group each, counted together in any order.
+//! Numbered cases on all processors: batches of one group each, counted in any order.
 
 use super::{Shard, Tally};
 use rtl_design::elaborate::Design;
@@ -7,24 +7,24 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::Mutex;
 use std::{panic, thread};
 
-/// Cases that are taken by their numbers. What becomes of one depends on its number alone, whatever runs beside it.
+/// Numbered cases. The outcome of a case depends only on its number.
 pub trait Campaign: Send + Sync {
-    /// Tells its designs from others.
+    /// Identifies its designs.
     fn digest(&self) -> u64;
 
-    /// Cases in each group, one behind the other.
+    /// Number of cases in each group, in order.
     fn groups(&self) -> Vec<u64>;
 
     /// Runs some cases of a group, at most [`Campaign::batch`].
     fn run(&self, group: usize, cases: Range<u64>) -> Tally;
 
-    /// How many cases of a group are run together.
+    /// Number of cases of a group in one run.
     fn batch(&self, _group: usize) -> u64 {
         128
     }
 }
 
-/// Campaigns one behind the other.
+/// Consecutive campaigns.
 pub struct Joined(pub Vec<Box<dyn Campaign>>);
 
 impl Campaign for Joined {
@@ -47,24 +47,24 @@ impl Campaign for Joined {
     }
 }
 
-/// A number that is the same for the same text on every machine (FNV-1a).
+/// A machine-independent hash of a text (FNV-1a).
 pub(super) fn hash(text: &str) -> u64 {
     text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
     })
 }
 
-/// A number that tells a design from others.
+/// A number that identifies a design.
 pub fn digest(design: &Design) -> u64 {
     hash(&format!("{design:?}"))
 }
 
-/// All cases of a campaign.
+/// Number of cases of a campaign.
 pub fn count(campaign: &dyn Campaign) -> u64 {
     campaign.groups().iter().sum()
 }
 
-/// Runs one part of a campaign on so many threads (0 = one for each processor). `progress` is told how many cases are done.
+/// Runs one part of a campaign on this many threads (0 = one for each processor). `progress` receives the number of finished cases.
 pub fn run_shard(
     campaign: &dyn Campaign,
     shard: Shard,

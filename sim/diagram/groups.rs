@@ -1,4 +1,4 @@
-//! What neighbouring bits belong to, and how that is written and coloured.
+//! Groups of neighbouring bits, with their texts and colours.
 
 use crate::{
     encoder::{AnswerKind, FrameLog},
@@ -7,7 +7,7 @@ use crate::{
     Time,
 };
 
-/// Who sends 8 and 16 bits, and where.
+/// Senders of 8 and 16 bits.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
     /// First part of an answer.
@@ -21,7 +21,7 @@ pub(super) enum Part {
 }
 
 impl Part {
-    /// The CRC that fits its bits, and the one that came. What the receiver sends has none.
+    /// The expected CRC, and the received one. Parts from the receiver have none.
     fn crcs(self, frame: &FrameLog) -> (u8, u8) {
         match self {
             Self::Answer => frame.crcs(0),
@@ -31,7 +31,7 @@ impl Part {
     }
 }
 
-/// Pieces of DATA that stand under one bracket.
+/// Kinds of DATA pieces under one bracket.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Idle,
@@ -129,7 +129,7 @@ fn kind_of(s: &Segment, frame: &FrameLog) -> Kind {
     }
 }
 
-/// What a command does.
+/// Name of a command.
 pub(super) fn command_name(command: u8) -> &'static str {
     match command {
         0b000_111 | 0b111_000 => "send position",
@@ -144,7 +144,7 @@ pub(super) fn command_name(command: u8) -> &'static str {
     }
 }
 
-/// What the 8 bits are that go with a command.
+/// Meaning of the 8 bits of a command.
 fn address_name(command: Option<u8>) -> &'static str {
     match command {
         Some(0b001_110 | 0b001_001) => "MRS code",
@@ -179,7 +179,7 @@ impl Group {
             Kind::Wait if f.start_edge.is_none() => {
                 texts(&["LOW: no start bit comes", "no start bit", "wait"])
             }
-            // Memory commands wait for their access.
+            // Memory commands wait for their access time.
             Kind::Wait if f.parameter.is_some() => {
                 texts(&["LOW until tac has passed", "LOW until tac", "wait"])
             }
@@ -241,7 +241,7 @@ impl Group {
     }
 }
 
-/// Additional data 1 or 2: the two have codes of their own.
+/// Number of the additional data, 1 or 2; their codes differ.
 fn number(info: &Info) -> u32 {
     match info.code {
         0..0x50 => 1,
@@ -249,7 +249,7 @@ fn number(info: &Info) -> u32 {
     }
 }
 
-/// The class that fills a driver's pieces.
+/// The class for the pieces of a driver.
 pub(super) fn fill(by: By) -> &'static str {
     match by {
         By::Receiver => "f-receiver",
@@ -259,12 +259,12 @@ pub(super) fn fill(by: By) -> &'static str {
     }
 }
 
-/// Whether a piece is a bit that arrives wrong.
+/// True if a piece is a wrong bit.
 pub(super) fn is_wrong(s: &Segment, frame: &FrameLog) -> bool {
     matches!(s.meaning, Meaning::Answer(index, _) if frame.is_wrong_bit(index))
 }
 
-/// The class that fills a piece.
+/// The class for a piece.
 pub(super) fn segment_fill(s: &Segment) -> &'static str {
     match (s.by, s.meaning) {
         (By::Encoder, Meaning::Idle | Meaning::Wait | Meaning::LeadOut | Meaning::Recovery) => {
@@ -291,7 +291,7 @@ pub(super) fn segment_fill(s: &Segment) -> &'static str {
     }
 }
 
-/// The class of a driver's line.
+/// The class for a driver's line.
 pub(super) fn stroke(by: By) -> &'static str {
     match by {
         By::Receiver => "receiver",
@@ -301,7 +301,7 @@ pub(super) fn stroke(by: By) -> &'static str {
     }
 }
 
-/// The name of a bit, for the pieces that are one.
+/// Name of a bit, for pieces of one bit.
 pub(super) fn bit_name(meaning: Meaning) -> Option<String> {
     match meaning {
         Meaning::Answer(..)

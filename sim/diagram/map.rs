@@ -1,10 +1,9 @@
-//! Draws a shmoo map: margin as a shade where all frames were good, a colour and a letter where not.
+//! Draws a shmoo map: the margin as a shade if all frames were good, otherwise a colour and a letter.
 
-use super::svg::{text_width, Anchor, Svg, BOLD_WIDTH};
-use crate::decimal;
 use crate::shmoo::{Axis, Fate, Map, Quantity, DECIMALS, PUBLISHED};
+use endat_draw::{decimal, text_width, Anchor, Svg, BOLD_WIDTH};
 
-/// Colours can be told apart by those who see fewer of them (Okabe and Ito), and each has its letter.
+/// Colours for colour-blind readers (Okabe and Ito), each with a letter.
 const STYLE: &str = "\
 text{font-family:'DejaVu Sans',Verdana,Helvetica,sans-serif;fill:#1f2937}\
 .title{font-size:19px;font-weight:bold}.sub{font-size:12.5px;fill:#4b5563}.name{font-size:13px;font-weight:bold}\
@@ -99,7 +98,7 @@ fn shade(margin: f64) -> usize {
     step.min(SHADES - 1)
 }
 
-/// Ink for a letter on the colour of a fate.
+/// Text colour for a letter on the colour of a fate.
 fn ink(fate: Fate) -> &'static str {
     match fate {
         Fate::Start | Fate::Refused | Fate::Pulses => "letter-dark",
@@ -107,7 +106,7 @@ fn ink(fate: Fate) -> &'static str {
     }
 }
 
-/// What is the same in all cells.
+/// Settings that all cells share.
 fn subtitle(map: &Map) -> String {
     let plan = &map.plan;
     let conditions = &plan.conditions;
@@ -140,7 +139,7 @@ fn subtitle(map: &Map) -> String {
     parts.join(" · ")
 }
 
-/// Calls `mark` for as many values as there is room for.
+/// Calls `mark` for as many values as fit.
 fn ticks(
     svg: &mut Svg,
     axis: &Axis,
@@ -156,7 +155,7 @@ fn ticks(
     }
 }
 
-/// Published limits, by number, in places of the axes; only maps of cable and clock have them.
+/// Published limits, by number, in map coordinates; only for maps of cable and clock.
 fn limits(map: &Map) -> Vec<(usize, Vec<(f64, f64)>)> {
     let (x, y) = (&map.plan.x, &map.plan.y);
     let swapped = match (x.quantity, y.quantity) {
@@ -175,7 +174,7 @@ fn limits(map: &Map) -> Vec<(usize, Vec<(f64, f64)>)> {
     drawn.collect()
 }
 
-/// Margin, fates and limits beside the map; where it ends, to the right and below.
+/// Margin, fates and limits next to the map; returns its right and lower end.
 fn legend(svg: &mut Svg, map: &Map, x: f64, limits: &[usize]) -> (f64, f64) {
     let mut y = TOP + 4.0;
     let mut edge = x + 26.0 * SHADES as f64;

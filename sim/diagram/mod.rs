@@ -1,24 +1,16 @@
 //! Draws a recorded frame as a timing diagram.
 //!
-//! CLOCK with its rising edges counted, DATA coloured by who drives it and cut into its fields, the times that matter, and an axis in
-//! microseconds. Long quiet spans are shortened and marked. If the cable is long, both ends are shown.
+//! CLOCK with its rising edges counted, DATA coloured by driver and divided into its fields, the important times, and an axis in
+//! microseconds. Long quiet spans are shortened and marked. If the cable is long, both ends are drawn.
 
-mod columns;
-mod edges;
 mod groups;
-mod histogram;
 mod map;
-mod opening;
 mod overview;
 mod rows;
 mod scale;
-mod series;
-mod svg;
 #[cfg(test)]
 mod tests;
 mod times;
-mod waves;
-mod wiring;
 
 use crate::{
     bench::Link,
@@ -27,19 +19,13 @@ use crate::{
     segments::{data_segments, first_falls, By, Level, Meaning, Segment},
     Time, US,
 };
-pub use edges::Edges;
-pub use histogram::edges_svg;
 pub use map::map_svg;
 pub use overview::overview_svg;
-pub use series::{series_svg, Lane, Series};
-pub use svg::is_drawing;
-pub use waves::{waves_svg, Wave};
-pub use wiring::{wiring_svg, WiredChannel, WiredPort};
 
+use endat_draw::{text_width, Anchor, Svg};
 use groups::{bit_name, fill, groups, is_wrong, segment_fill, stroke};
 use scale::Scale;
 use std::ops::Range;
-use svg::{text_width, Anchor, Svg};
 
 const STYLE: &str = "\
 text{font-family:'DejaVu Sans',Verdana,Helvetica,sans-serif;fill:#1f2937}\
@@ -55,9 +41,9 @@ path{fill:none}.clock{stroke:#111827;stroke-width:1.4}.grid{stroke:#e5e7eb;strok
 .f-idle{fill:#fffbeb}.f-address{fill:#fdba74}.f-data{fill:#ffedd5}.f-info{fill:#dfb8d3}\
 .f-sent-zero{fill:#eff6ff}.f-sent-start{fill:#60a5fa}.f-sent-address{fill:#93c5fd}.f-sent-data{fill:#bfdbfe}";
 
-/// Between a row and the next.
+/// Space between rows.
 const ROW_GAP: f64 = 26.0;
-/// Place of the first moment on the page.
+/// Horizontal position of the first time.
 const LEFT: f64 = 118.0;
 const RIGHT: f64 = 40.0;
 const PERIOD_PIXELS: f64 = 27.0;
@@ -65,19 +51,19 @@ const CLOCK_HEIGHT: f64 = 24.0;
 const DATA_HEIGHT: f64 = 34.0;
 /// A quiet span is shortened to this many clock periods.
 const QUIET_PERIODS: Time = 4;
-/// So much of both ends of a long wait is shown as it is, and the rest shortened if it is longer than that.
+/// Both ends of a long wait are drawn to this length; the middle is shortened.
 const WAIT_PERIODS: Time = 6;
 const LONG_PERIODS: Time = 32;
-/// Both ends are shown if the cable and the transceivers are longer than this part of a period.
+/// Both ends are drawn if the delay of cable and transceivers exceeds this part of a period.
 const BOTH_ENDS_PART: Time = 3;
 
-/// The frame number `index` (0 = first) of a link as SVG; none if it is not in the link's record.
+/// Frame number `index` (0 = first) of a link as SVG; `None` if it was not recorded.
 pub fn frame_svg(link: &Link, index: usize, title: &str) -> Option<String> {
     let frame = link.encoder().frames().get(index)?;
     Some(Diagram::new(link, frame)?.draw(title))
 }
 
-/// The part of a wait that is shortened though the clock goes on, which it does to the end of the wait or to `last_edge`.
+/// The part of a wait that is shortened while the clock continues, until the end of the wait or `last_edge`.
 fn long_wait(s: &Segment, last_edge: Time, period: Time) -> Option<(Time, Time)> {
     let until = s.until.min(last_edge).saturating_sub(WAIT_PERIODS * period);
     let from = s.from + WAIT_PERIODS * period;
@@ -98,7 +84,7 @@ struct Diagram<'a> {
     zero: Time,
     begin: Time,
     rows: Vec<Range<Time>>,
-    /// The row that is drawn, and where it begins on a page without rows.
+    /// The current row, and its start on a page without rows.
     row: Range<Time>,
     shift: f64,
     segments: Vec<Segment>,
@@ -168,7 +154,7 @@ impl<'a> Diagram<'a> {
         self.svg.finish(right + RIGHT, height, title, STYLE)
     }
 
-    /// CLOCK, DATA, axis and times of a row, and the height that they need.
+    /// CLOCK, DATA, axis and times of a row; returns its height.
     fn draw_row(&mut self, mut y: f64) -> f64 {
         let tracks = match self.both_ends {
             false => vec![Row::Clock(End::Receiver), Row::Data(End::Receiver)],
@@ -218,7 +204,7 @@ impl<'a> Diagram<'a> {
         )
     }
 
-    /// Where it ends.
+    /// Draws the legend; returns its end.
     fn legend(&mut self, mut x: f64, y: f64) -> f64 {
         let entries = [
             (By::Receiver, "receiver drives"),
@@ -300,7 +286,7 @@ impl<'a> Diagram<'a> {
             }
             let x = self.x(*time);
             if let Some(middle) = hidden.take() {
-                // The clock goes on there; the marks cover the step.
+                // The clock continues there; the marks cover the step.
                 let before = points.last().map_or(top, |p| p.1);
                 points.extend([(middle, before), (middle, level_y(!level))]);
             }
@@ -370,7 +356,7 @@ impl<'a> Diagram<'a> {
             before = Some(y);
             let is_home = self.is_home(&(s.from..s.until));
             if let Some(label) = name.filter(|_| is_home && named != Some(s.meaning)) {
-                // What a row cuts off makes no room less.
+                // A piece cut by a row has the same space.
                 if text_width(&label, 9.0) < self.scale.x(s.until) - self.scale.x(s.from) {
                     named = Some(s.meaning);
                     self.svg
@@ -388,7 +374,7 @@ impl<'a> Diagram<'a> {
         }
     }
 
-    /// What the cells belong to, above them.
+    /// Draws the fields above the cells.
     fn field_brackets(&mut self, end: End, y: f64) {
         for group in groups(self.segments_at(end), self.frame) {
             let span = group.from..group.until;
@@ -403,7 +389,7 @@ impl<'a> Diagram<'a> {
             let (top, bottom) = (y + 10.0, y + 18.0);
             let (l, r) = (a + 1.5, b - 1.5);
             let mut bracket = vec![(l, top + 4.0), (r, top + 4.0)];
-            // Open where it goes on in another row.
+            // Open if it continues in another row.
             if group.from >= self.row.start {
                 bracket.insert(0, (l, bottom));
             }

@@ -1,22 +1,19 @@
-//! Draws all frames of a link, one behind the other: what was sent, what came back, and when. Only the order is to scale.
+//! Draws all frames of a link in order: sent command, answer, and time. Only the order is to scale.
 
-use super::{
-    groups::command_name,
-    svg::{text_width, Anchor, Svg},
-    LEFT, RIGHT, STYLE,
-};
+use super::{groups::command_name, LEFT, RIGHT, STYLE};
 use crate::{
     bench::Link,
     encoder::{AnswerKind, FrameEnd, FrameLog, Symbol},
     frame::Parameter,
     Time, MS, US,
 };
+use endat_draw::{text_width, Anchor, Svg};
 use std::ops::Range;
 
-/// A frame, and the pause before it.
+/// Width of a frame with the pause before it.
 const FRAME_WIDTH: f64 = 172.0;
 const PAUSE_WIDTH: f64 = 72.0;
-/// A pause without an encoder.
+/// Width of a pause without an encoder.
 const ABSENT_WIDTH: f64 = 118.0;
 /// Frames in a line.
 const FRAMES: usize = 6;
@@ -25,10 +22,10 @@ const CLOCK_HEIGHT: f64 = 18.0;
 const DATA_HEIGHT: f64 = 24.0;
 /// Part of a frame's width in which the receiver sends.
 const SENT_PART: f64 = 0.57;
-/// Between the strokes that stand for clock pulses.
+/// Distance of the strokes for clock pulses.
 const STROKES: f64 = 4.0;
 
-/// Every frame of a link as SVG; none if there are none.
+/// Every frame of a link as SVG; `None` without frames.
 pub fn overview_svg(link: &Link, title: &str) -> Option<String> {
     let frames = link.encoder().frames();
     let absent = absent(link);
@@ -58,7 +55,7 @@ pub fn overview_svg(link: &Link, title: &str) -> Option<String> {
     (lines > 0).then(|| svg.finish(right + RIGHT, height, title, STYLE))
 }
 
-/// When there was no encoder: unplugged, or without supply.
+/// Times without an encoder: unplugged, or without supply.
 fn absent(link: &Link) -> Vec<Range<Time>> {
     let outputs = link.trace().map_or(&[][..], |t| &t.encoder);
     let ends = outputs.iter().skip(1).map(|o| o.0).chain([Time::MAX]);
@@ -67,7 +64,7 @@ fn absent(link: &Link) -> Vec<Range<Time>> {
     absent.map(|(o, end)| o.0..end).collect()
 }
 
-/// What is between two frames, which may be that there was no encoder; where it ends.
+/// Draws the pause between two frames, with or without an encoder; returns its end.
 fn pauses(svg: &mut Svg, mut x: f64, y: f64, span: Range<Time>, absent: &[Range<Time>]) -> f64 {
     let mut from = span.start.min(span.end);
     for gone in absent {
@@ -91,7 +88,7 @@ fn pauses(svg: &mut Svg, mut x: f64, y: f64, span: Range<Time>, absent: &[Range<
     x
 }
 
-/// Nobody drives DATA, as there is no encoder.
+/// Draws an undriven DATA, without an encoder.
 fn nobody(svg: &mut Svg, x: f64, y: f64, width: f64) {
     svg.rect(x, y, width, DATA_HEIGHT, "gap");
     svg.rect(x, y, width, DATA_HEIGHT, "f-nobody");
@@ -104,7 +101,7 @@ fn nobody(svg: &mut Svg, x: f64, y: f64, width: f64) {
     svg.text(middle, row + 4.0, Anchor::Middle, "field", text);
 }
 
-/// A time for people, with three digits or more.
+/// A time with at least three digits.
 fn span(time: Time) -> String {
     match time {
         0..MS => format!("{:.0} us", time as f64 / US as f64),
@@ -145,7 +142,7 @@ fn idle(svg: &mut Svg, x: f64, y: f64, width: f64) {
 fn draw(svg: &mut Svg, x: f64, y: f64, frame: &FrameLog) {
     let (data, bottom, end) = (y + 34.0, y + CLOCK_HEIGHT, x + FRAME_WIDTH);
     let (name, sent, came) = texts(frame);
-    // A pulse alone, or many.
+    // A single pulse, or many.
     let strokes = match frame.command {
         None => 2,
         Some(_) => ((FRAME_WIDTH - 12.0) / STROKES) as usize,
@@ -198,7 +195,7 @@ fn draw(svg: &mut Svg, x: f64, y: f64, frame: &FrameLog) {
     );
 }
 
-/// What is wrong with an answer.
+/// Fault of an answer.
 fn fault(f: &FrameLog) -> Option<&'static str> {
     match f.errors {
         _ if f.end == FrameEnd::Lost => Some("cut off"),
@@ -210,7 +207,7 @@ fn fault(f: &FrameLog) -> Option<&'static str> {
     }
 }
 
-/// What a frame is, what the receiver sent, what came back.
+/// Frame, sent command and answer as text.
 fn texts(f: &FrameLog) -> (String, String, String) {
     let word = |p: Parameter| format!("{:02X} {:04X}", p.address, p.data);
     let Some(code) = f.command else {
@@ -224,7 +221,7 @@ fn texts(f: &FrameLog) -> (String, String, String) {
         (None, ..) => "no start bit".into(),
         _ if fault(f).is_some() => fault(f).unwrap_or_default().into(),
         (_, AnswerKind::Parameter, Some(reply)) => word(reply),
-        // Wider ones have no room.
+        // Wider positions do not fit.
         (_, AnswerKind::Position, _) if f.position < 1 << 36 => format!("{:#X}", f.position),
         (_, AnswerKind::Position, _) => "position".into(),
         _ => String::new(),

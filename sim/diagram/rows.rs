@@ -1,4 +1,4 @@
-//! A frame that is too long for the page goes on in the next row.
+//! A frame that is too long for the page continues in the next row.
 
 use super::{scale::Scale, Diagram, LEFT};
 use crate::Time;
@@ -7,7 +7,7 @@ use std::ops::Range;
 /// Longest row in pixels.
 const ROW_PIXELS: f64 = 1300.0;
 
-/// Cuts the page into rows of about one length, where a cell begins if one does.
+/// Divides the page into rows of about equal length, at cell boundaries if possible.
 pub(super) fn cut(scale: &Scale, cells: &[Time], begin: Time, end: Time) -> Vec<Range<Time>> {
     let mut rows = Vec::new();
     let mut from = begin;
@@ -32,23 +32,23 @@ pub(super) fn cut(scale: &Scale, cells: &[Time], begin: Time, end: Time) -> Vec<
 }
 
 impl Diagram<'_> {
-    /// From now on this row is drawn.
+    /// Selects the current row.
     pub(super) fn begin_row(&mut self, row: &Range<Time>) {
         self.row = row.clone();
         self.shift = self.scale.x(row.start) - LEFT;
     }
 
-    /// The place of a moment in this row, or the end of the row that it is beyond.
+    /// Horizontal position of a time in this row, or the end of the row.
     pub(super) fn x(&self, time: Time) -> f64 {
         self.scale.x(time.clamp(self.row.start, self.row.end)) - self.shift
     }
 
-    /// Whether something of a span is in this row.
+    /// True if part of a span is in this row.
     pub(super) fn is_in_row(&self, span: &Range<Time>) -> bool {
         span.start < self.row.end && span.end > self.row.start
     }
 
-    /// Whether no row has more of a span than this one: here stands what belongs to it.
+    /// True if no row has a larger part of a span: this row has its labels.
     pub(super) fn is_home(&self, span: &Range<Time>) -> bool {
         let part = |row: &Range<Time>| {
             let (from, until) = (span.start.max(row.start), span.end.min(row.end));
@@ -78,7 +78,7 @@ mod tests {
         for row in &rows {
             assert!((500..=1300).contains(&(row.end - row.start)), "{row:?}");
         }
-        // Without cells at an event, and a short frame in one row.
+        // Without cells, at an event; and a short frame in one row.
         assert_eq!(cut(&scale, &[], 0, 2000), [0..1000, 1000..2000]);
         assert_eq!(cut(&scale, &cells, 0, 1300).len(), 1);
     }

@@ -1,15 +1,15 @@
-//! From picoseconds to pixels, with long quiet spans shortened.
+//! Converts picoseconds to pixels, with long quiet spans shortened.
 
 use crate::Time;
 
-/// A stretch of time without an event that is drawn shorter than it is.
+/// A time span without an event, drawn shorter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Break {
     pub(super) from: Time,
     pub(super) until: Time,
 }
 
-/// Maps times to places on the page.
+/// Maps times to horizontal positions.
 pub(super) struct Scale {
     /// Corner points of the map, in order of time.
     knots: Vec<(Time, f64)>,
@@ -53,7 +53,7 @@ impl Scale {
         }
     }
 
-    /// The place of a moment.
+    /// Position of a time.
     pub(super) fn x(&self, time: Time) -> f64 {
         let next = self.knots.partition_point(|k| k.0 <= time);
         let before = self.knots[next.saturating_sub(1)];
@@ -67,19 +67,19 @@ impl Scale {
         before.1 + part * (after.1 - before.1)
     }
 
-    /// Whether a moment is inside a shortened span, where a place means nothing.
+    /// True if a time is inside a shortened span, where positions are undefined.
     pub(super) fn in_break(&self, time: Time) -> bool {
         self.middle_of_break(time).is_some()
     }
 
-    /// The middle of the shortened span that a moment is inside of.
+    /// The middle of the shortened span around a time.
     pub(super) fn middle_of_break(&self, time: Time) -> Option<f64> {
         let inside = |b: &&Break| b.from < time && time < b.until;
         let found = self.breaks.iter().find(inside)?;
         Some((self.x(found.from) + self.x(found.until)) / 2.0)
     }
 
-    /// The events, none of them inside a shortened span.
+    /// The events outside of shortened spans.
     pub(super) fn events(&self) -> impl Iterator<Item = Time> + '_ {
         self.knots.iter().map(|k| k.0)
     }

@@ -98,7 +98,7 @@ fn glitches_and_conflicts_are_seen_and_nothing_else_is() {
 fn bits_that_arrive_wrong_are_marked_and_so_is_the_crc() {
     let wrong = |svg: &str| svg.matches("<rect class=\"f-wrong\"").count();
     let legend = |svg: &str| usize::from(svg.contains("arrives wrong"));
-    // One bit of the position, then one of the CRC; beside each the legend's.
+    // One bit of the position, then one of the CRC; each with that of the legend.
     for frame in [3, 5] {
         let svg = drawing("crc-error", frame);
         assert_eq!((wrong(&svg), legend(&svg)), (2, 1));
@@ -132,7 +132,7 @@ fn frames_that_end_early_can_be_drawn() {
     }
 }
 
-/// The clock goes on behind the mark, and the count with it.
+/// The clock continues after the mark, and so does the count.
 #[test]
 fn a_long_wait_is_shortened_though_the_clock_goes_on() {
     let svg = drawing("no-answer", 3);
@@ -148,7 +148,7 @@ fn a_long_wait_is_shortened_though_the_clock_goes_on() {
     assert_eq!(fields.last().unwrap(), "LOW: no start bit comes");
 }
 
-/// No line of the clock goes down a slope, wherever in a period the mark stands.
+/// Clock lines are vertical, wherever in a period the mark is.
 #[test]
 fn edges_beside_a_mark_are_upright() {
     let mut s = scenario::named("no-answer").unwrap();
@@ -261,7 +261,7 @@ fn exchange(cable_m: f64, exchanges: &[(u8, u8, u16, u8)]) -> String {
     frame_svg(bench.link(0), exchanges.len(), "an exchange").unwrap()
 }
 
-/// The bench after them.
+/// The bench after these exchanges.
 fn exchanged(cable_m: f64, exchanges: &[(u8, u8, u16, u8)]) -> Bench<TestReceiver> {
     const SYSTEM_HZ: u64 = 128_000_000;
     let mut encoder = EncoderConfig::endat22(13).position(PositionSource::Fixed(0x0BAD));
@@ -289,7 +289,7 @@ fn names(letter: char, most: u32) -> impl Iterator<Item = String> {
     (0..=most).rev().map(move |i| format!("{letter}{i}"))
 }
 
-/// The 8 and 16 bits that a receiver or an encoder sends.
+/// The 8 and 16 bits from a receiver or an encoder.
 fn fields() -> impl Iterator<Item = String> {
     names('A', 7).chain(names('P', 15))
 }
@@ -355,7 +355,7 @@ fn additional_data_and_the_supplement_have_names_and_values() {
         let answer = head.chain(names('C', 4)).chain(info()).chain(info());
         let bits = answer.chain(words("0 0 0 0 0 0 0 S")).chain(fields());
         let bits: Vec<String> = bits.collect();
-        // With both ends a row of the page has bits of one, then of the other.
+        // With both ends a row of the page has bits of one end, then of the other.
         let (mut drawn, mut bits) = (texts(&svg, "bit"), vec![bits; ends].concat());
         if ends > 1 {
             drawn.sort();
@@ -387,7 +387,7 @@ fn additional_data_and_the_supplement_have_names_and_values() {
         }
         for (class, count) in [("f-info", 18), ("f-sent-zero", 8), ("f-sent-start", 1)] {
             let rects = svg.matches(&format!("<rect class=\"{class}\"")).count();
-            // Where a row ends, a cell at the other end may be in two parts.
+            // At the end of a row, a cell at the other end may be in two parts.
             let most = count * ends + ends - 1;
             assert!((count * ends..=most).contains(&rects), "{class}: {rects}");
         }

@@ -1,10 +1,8 @@
-//! The axis, the marks of shortened spans, and the times that matter.
+//! The axis, the marks of shortened spans, and the important times.
 
-use super::{
-    svg::{text_width, Anchor},
-    Diagram,
-};
+use super::Diagram;
 use crate::{Time, US};
+use endat_draw::{text_width, Anchor};
 use std::ops::Range;
 
 impl Diagram<'_> {
@@ -60,11 +58,11 @@ impl Diagram<'_> {
         }
     }
 
-    /// The times that matter, and the height that they need.
+    /// Draws the important times; returns the height.
     pub(super) fn dimensions(&mut self, y: f64) -> f64 {
         let f = self.frame;
         let us = |t: Time| t as f64 / US as f64;
-        // Times are the encoder's; places are those of the shown edges at the receiver.
+        // Times are the encoder's; positions are those of the drawn edges at the receiver.
         let flight = f.first_fall - self.zero;
         let at_receiver = |t: Time| t.saturating_sub(flight);
         let mut spans = vec![(
@@ -93,7 +91,7 @@ impl Diagram<'_> {
                 self.dimension(place, &span, &text);
             }
         }
-        // Beside the frame that it follows.
+        // Next to the frame that it follows.
         if let Some(fall) = f.data_fall {
             let text = format!("tm {:.3} us", us(fall - f.last_rise));
             let span = at_receiver(f.last_rise)..at_receiver(fall);
@@ -105,7 +103,7 @@ impl Diagram<'_> {
         place + 20.0
     }
 
-    /// A time with its arrows; open where it goes on in another row.
+    /// A time with its arrows; open if it continues in another row.
     fn dimension(&mut self, y: f64, span: &Range<Time>, text: &str) {
         let (a, b) = (self.x(span.start), self.x(span.end));
         let ends = [(span.start, 5.0), (span.end, -5.0)];

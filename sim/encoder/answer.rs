@@ -1,4 +1,4 @@
-//! What the encoder answers, bit by bit.
+//! The encoder's answer, bit by bit.
 
 use super::{AnswerKind, Command, Defect, Drive, Encoder, Phase, Symbol};
 use crate::{
@@ -106,7 +106,7 @@ impl Encoder {
         answer.bits_with_crc(crc)
     }
 
-    /// F1 and F2, which have opposite senses.
+    /// F1 and F2, which have opposite polarity.
     fn errors(&self, f2: bool) -> (bool, Option<bool>) {
         let alarm = self.status.alarms != 0;
         let mut errors = (alarm, f2.then_some(!alarm));

@@ -1,14 +1,14 @@
-//! Whether the clock keeps to its limits.
+//! Checks the limits of the clock.
 
 use super::{Encoder, Violation};
 use crate::{Time, US};
 use std::ops::RangeInclusive;
 
-/// The rising edges between which the clock period is measured.
+/// The rising edges used to measure the clock period.
 pub(super) const PERIOD_EDGES: RangeInclusive<u32> = 1..=10;
 /// Slowest clock of the interface: 100 kHz.
 const LONGEST_PERIOD: Time = 10 * US;
-/// Part of the clock period by which a mean rate may miss its limit.
+/// Tolerance of a mean rate, as a part of the clock period.
 const RATE_TOLERANCE: f64 = 0.005;
 
 impl Encoder {
@@ -45,7 +45,7 @@ impl Encoder {
         }
     }
 
-    /// A long LOW is a pause, which is allowed; a short one is not.
+    /// A long LOW is a legal pause; a short one is not.
     pub(super) fn check_low(&mut self, time: Time, width: Time) {
         let edge = self.log().rising_edges + 1;
         if edge == 2 && self.work.nominal == 0 {
@@ -65,7 +65,7 @@ impl Encoder {
         }
     }
 
-    /// Half a clock period and how far from it a phase may be; before the period is known, for the fastest clock.
+    /// Half a clock period and the tolerance of a phase; before the period is known, for the fastest clock.
     fn half_period(&self) -> (Time, Time) {
         let period = match self.work.nominal {
             0 => 1_000_000_000_000 / self.config.max_clock_hz,

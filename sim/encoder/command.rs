@@ -1,6 +1,6 @@
 //! The fourteen mode commands, from the encoder's side.
 
-/// What a receiver asks for with its six bits. The first seven are EnDat 2.1, the others EnDat 2.2.
+/// A receiver's command with its six bits. The first seven are EnDat 2.1, the others EnDat 2.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
     /// Position, without F2.
@@ -19,22 +19,22 @@ pub enum Command {
     ReceiveTestCommand,
     /// Position with the selected additional data.
     Position,
-    /// The same; the supplement selects a memory area or additional data.
+    /// As `Position`; the supplement selects a memory area or additional data.
     PositionSelectMemory,
-    /// The same; the supplement writes a word.
+    /// As `Position`; the supplement writes a word.
     PositionReceiveParameter,
-    /// The same; the supplement asks for a word.
+    /// As `Position`; the supplement requests a word.
     PositionSendParameter,
-    /// The same; the supplement clears errors and warnings.
+    /// As `Position`; the supplement clears errors and warnings.
     PositionErrorReset,
-    /// The same; the supplement is a test command.
+    /// As `Position`; the supplement is a test command.
     PositionTestCommand,
     /// Echo of address and data.
     ReceiveCommunication,
 }
 
 impl Command {
-    /// All of them, with their six bits (TI, ADDI-DATA and Renesas drivers agree).
+    /// All commands, with their six bits (TI, ADDI-DATA and Renesas drivers agree).
     pub const ALL: [(u8, Self); 14] = [
         (0b000_111, Self::SendPosition),
         (0b001_110, Self::SelectMemory),
@@ -52,23 +52,23 @@ impl Command {
         (0b010_010, Self::ReceiveCommunication),
     ];
 
-    /// What an encoder takes the six bits for.
+    /// Decodes the six bits.
     pub(super) fn decode(code: u8, endat22: bool) -> Option<Self> {
         let (_, command) = Self::ALL.into_iter().find(|c| c.0 == code)?;
         (endat22 || !command.is_endat22()).then_some(command)
     }
 
-    /// Whether only an EnDat 2.2 encoder knows it.
+    /// True if only EnDat 2.2 encoders support it.
     pub fn is_endat22(self) -> bool {
         self.has_f2() || self == Self::ReceiveCommunication
     }
 
-    /// Whether the answer is a position with F1 and F2.
+    /// True if the answer is a position with F1 and F2.
     pub fn has_f2(self) -> bool {
         self == Self::Position || self.has_supplement()
     }
 
-    /// Whether 8 and 16 bits follow the mode command, and the answer repeats them.
+    /// True if 8 and 16 bits follow the mode command, and the answer repeats them.
     pub fn has_parameter(self) -> bool {
         matches!(
             self,
@@ -81,7 +81,7 @@ impl Command {
         )
     }
 
-    /// Whether the receiver sends 8 and 16 bits after the answer.
+    /// True if the receiver sends 8 and 16 bits after the answer.
     pub fn has_supplement(self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! What kind of encoder it is.
+//! Kind of encoder.
 
 use super::{Cause, Defect, InfoValues, TypePlate, LONG_RECOVERY};
 use crate::{rng::Rng, Time, MS, NS, US};
@@ -7,10 +7,10 @@ use std::{
     sync::Arc,
 };
 
-/// Where an encoder takes its positions from; they are cut to its width.
+/// Source of the positions, which are cut to the encoder's width.
 #[derive(Clone)]
 pub enum PositionSource {
-    /// Always the same.
+    /// Constant.
     Fixed(u64),
     /// `start`, then `step` more in every frame.
     Ramp {
@@ -19,9 +19,9 @@ pub enum PositionSource {
         /// Added from frame to frame, with wrap-around.
         step: u64,
     },
-    /// A random one in every frame, from the encoder's seed.
+    /// Random in every frame, from the encoder's seed.
     Random,
-    /// A function of the frame number and the moment of the first falling clock edge.
+    /// A function of the frame number and the time of the first falling clock edge.
     Function(Arc<dyn Fn(u64, Time) -> u64 + Send + Sync>),
 }
 
@@ -47,7 +47,7 @@ impl std::fmt::Debug for PositionSource {
     }
 }
 
-/// The falling edge that takes the next position in continuous clock mode; descriptions leave both readings. `R(c)` launches
+/// The falling edge that latches the next position in continuous clock mode; descriptions allow both readings. `R(c)` launches
 /// the last CRC bit, `R(c+1)` the HIGH cell, `R(c+2)` LOW.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LatchEdge {
@@ -62,13 +62,13 @@ pub enum LatchEdge {
 pub struct EncoderConfig {
     /// Width of the position in bits, 1..=48.
     pub position_bits: u32,
-    /// Understands the EnDat 2.2 commands.
+    /// Supports the EnDat 2.2 commands.
     pub endat22: bool,
-    /// Where positions come from.
+    /// Source of the positions.
     pub position: PositionSource,
     /// Calculation time tcal: first falling edge to the earliest start bit.
     pub tcal: Time,
-    /// Up to this is added to tcal, at random in each frame.
+    /// Largest random addition to tcal in each frame.
     pub tcal_jitter: Time,
     /// Recovery time tm: drawn from this range in each frame.
     pub tm: RangeInclusive<Time>,
@@ -76,57 +76,57 @@ pub struct EncoderConfig {
     pub clock_to_data: Time,
     /// First falling clock edge to the release of DATA (at most 0.2 us).
     pub release: Time,
-    /// Fastest clock it takes, in hertz.
+    /// Fastest supported clock, in hertz.
     pub max_clock_hz: u64,
-    /// Longest clock LOW it takes (50 ms; 30 us for LC linear encoders).
+    /// Longest supported clock LOW (50 ms; 30 us for LC linear encoders).
     pub max_clock_low: Time,
-    /// Longest clock HIGH within a frame before it gives the frame up.
+    /// Longest clock HIGH within a frame before the encoder aborts it.
     pub max_clock_high: Time,
-    /// DATA must have been LOW for this long before the next frame (tR).
+    /// DATA must have been LOW for this time before the next frame (tR).
     pub ready_low: Time,
     /// Largest deviation of a HIGH or LOW phase from half a period, as a part of the period.
     pub pulse_variation: f64,
-    /// Recovery time of EnDat 2.2 commands when the short one is selected; none = it cannot be selected.
+    /// Recovery time of EnDat 2.2 commands with the short setting; `None` = it cannot be selected.
     pub tm_short: Option<RangeInclusive<Time>>,
     /// Access time tac of memory commands, from the last bit of the command to the answer or the end of Busy (at most 12 ms).
     pub tac: RangeInclusive<Time>,
     /// How long a write keeps the memory busy (at most 12 ms).
     pub write_time: RangeInclusive<Time>,
-    /// Pause that EnDat 2.1 commands with a parameter need between each other (old encoders: 1 ms).
+    /// Pause between two EnDat 2.1 commands with a parameter (old encoders: 1 ms).
     pub parameter_gap: Time,
-    /// How long it does not listen after a reset command.
+    /// Time without receiving after a reset command.
     pub reset_time: Time,
-    /// From being plugged in until it is ready.
+    /// Time from plugging in until it is ready.
     pub start_up: Time,
     /// CLOCK LOW after the last bit of an answer until DATA is released for the supplement. Not published; it must hold the
     /// last bit until the receiver has sampled it.
     pub park_release: Time,
-    /// Fewest LOW bits before the start bit of a supplement: what TI's driver sends; the least is not published.
+    /// Fewest LOW bits before the start bit of a supplement: as in TI's driver; the minimum is not published.
     pub supplement_zeros: u32,
-    /// Whether the clock may go on after an EnDat 2.1 position, and which edge then takes the next one.
+    /// Continuous clock after an EnDat 2.1 position, with the edge that latches the next one; `None` = not supported.
     pub continuous: Option<LatchEdge>,
-    /// Whether the error reset 101101 also ends the additional data: HEIDENHAIN's FAQ says so, TI's driver does not
-    /// count on it.
+    /// True if the error reset 101101 also ends the additional data: HEIDENHAIN's FAQ states it, TI's driver does not
+    /// rely on it.
     pub error_reset_stops_infos: bool,
-    /// Function initialisation, word 3 of the operating status, after power-up: bits 1..0 are the recovery time, what the others
-    /// mean is the manufacturer's.
+    /// Function initialisation, word 3 of the operating status, after power-up: bits 1..0 are the recovery time, the others
+    /// are defined by the manufacturer.
     pub function: u16,
-    /// What the manufacturer wrote into it.
+    /// Data written by the manufacturer.
     pub plate: TypePlate,
-    /// What the additional data say.
+    /// Content of the additional data.
     pub values: InfoValues,
-    /// What will be wrong with it, and when.
+    /// Faults of the encoder, with their times.
     pub causes: Vec<Cause>,
     /// Defects, each with the frames (0 = first) that have it.
     pub defects: Vec<(RangeInclusive<u64>, Defect)>,
-    /// When the encoder is not connected.
+    /// Times when the encoder is not connected.
     pub unplugged: Vec<Range<Time>>,
     /// Seed of everything random in it.
     pub seed: u64,
 }
 
 impl EncoderConfig {
-    /// A sound EnDat 2.2 encoder with a 16 MHz clock, tcal 5 us and the default recovery time.
+    /// A good EnDat 2.2 encoder with a 16 MHz clock, tcal 5 us and the default recovery time.
     pub fn endat22(position_bits: u32) -> Self {
         Self {
             position_bits,
@@ -162,7 +162,7 @@ impl EncoderConfig {
         }
     }
 
-    /// An encoder that knows only EnDat 2.1, with tcal 9 us.
+    /// An EnDat 2.1 encoder, with tcal 9 us.
     pub fn endat21(position_bits: u32) -> Self {
         Self {
             endat22: false,
@@ -190,7 +190,7 @@ impl EncoderConfig {
         self
     }
 
-    /// Adds something that will be wrong.
+    /// Adds a fault.
     pub fn cause(mut self, cause: Cause) -> Self {
         self.causes.push(cause);
         self
@@ -208,7 +208,7 @@ impl EncoderConfig {
         self
     }
 
-    /// The supply or the plug going off and on. A plug that is pulled before the encoder has started leaves it off.
+    /// Switching of supply or plug. If the plug is pulled before the encoder has started, it stays off.
     pub(super) fn supply(&self) -> Vec<(Time, bool)> {
         let mut absent: Vec<Range<Time>> = Vec::new();
         for r in &self.unplugged {

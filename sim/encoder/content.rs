@@ -1,9 +1,9 @@
-//! What an encoder has in it when it leaves the factory, and what its sensors say: plain data of its configuration.
+//! Factory content of an encoder, and sensor values: plain data of its configuration.
 
 use crate::Time;
 use std::ops::Range;
 
-/// What the manufacturer wrote into an encoder, apart from what its times and widths say.
+/// Data written by the manufacturer, except those that follow from times and widths.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TypePlate {
     /// Rotary or angle encoder; otherwise linear (word 14, bit 15).
@@ -22,20 +22,20 @@ pub struct TypePlate {
     pub serial_letters: [u8; 2],
     /// Serial number (words 27 to 29).
     pub serial_number: u32,
-    /// Alarms it can tell (word 35).
+    /// Supported alarms (word 35).
     pub alarms: u16,
-    /// Warnings it can tell (word 36).
+    /// Supported warnings (word 36).
     pub warnings: u16,
-    /// Additional data 1 it has, bit n = code 0x40 + n (0xBD word 0: the bits are an assumption).
+    /// Supported additional data 1, bit n = code 0x40 + n (0xBD word 0: the bits are an assumption).
     pub infos_1: u16,
-    /// Additional data 2 it has, bit n = code 0x50 + n (0xBD word 1).
+    /// Supported additional data 2, bit n = code 0x50 + n (0xBD word 1).
     pub infos_2: u16,
     /// For functional safety (word 37).
     pub safety: bool,
 }
 
 impl TypePlate {
-    /// A singleturn encoder with 2^`bits` measuring steps per revolution that tells everything.
+    /// A singleturn encoder with 2^`bits` measuring steps per revolution and all additional data.
     pub fn rotary(bits: u32) -> Self {
         Self {
             rotary: true,
@@ -54,7 +54,7 @@ impl TypePlate {
         }
     }
 
-    /// A rotary encoder with a position of so many bits: above 31 bits the upper ones count revolutions.
+    /// A rotary encoder with `position_bits` bits: above 31 bits the upper ones count revolutions.
     pub fn of_width(position_bits: u32) -> Self {
         let turn_bits = match position_bits {
             0..32 => 0,
@@ -66,7 +66,7 @@ impl TypePlate {
         }
     }
 
-    /// A rotary encoder with so many bits of angle, and so many that count revolutions.
+    /// A rotary encoder with these bits of angle and of revolutions.
     pub fn of_turns(single_turn_bits: u32, multi_turn_bits: u32) -> Self {
         Self {
             revolutions: if multi_turn_bits > 0 {
@@ -88,13 +88,13 @@ impl TypePlate {
         }
     }
 
-    /// How many of `position_bits` count revolutions.
+    /// Number of the `position_bits` that count revolutions.
     pub fn multiturn_bits(&self) -> u32 {
         u32::from(self.revolutions).checked_ilog2().unwrap_or(0)
     }
 }
 
-/// What the additional data say, as far as it does not come from the protocol.
+/// Content of the additional data, except protocol data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InfoValues {
     /// RM: the reference run is done.
@@ -141,10 +141,10 @@ pub const LONG_RECOVERY: u16 = 0b10;
 /// Function initialisation for a recovery time of 1.25 to 3.75 us.
 pub const SHORT_RECOVERY: u16 = 0b01;
 
-/// Something that is really wrong for a time. It sets its bits; they stay until they are cleared, and come back if it lasts.
+/// A real fault for some time. It sets its bits; they stay until they are cleared, and return if the fault lasts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cause {
-    /// When.
+    /// Time span.
     pub during: Range<Time>,
     /// Bits of the alarm word (0xB9 word 0): 0 light source, 1 signal amplitude, 2 position value, 3 overvoltage, 4 undervoltage,
     /// 5 overcurrent, 6 battery.
@@ -157,7 +157,7 @@ pub struct Cause {
 mod tests {
     use super::*;
 
-    /// Catches a wide encoder that calls itself singleturn, and steps that are no turn.
+    /// Catches a wide encoder with the type singleturn, and steps that do not make a turn.
     #[test]
     fn wide_positions_count_revolutions() {
         for (bits, revolutions, steps) in [

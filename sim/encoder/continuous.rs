@@ -1,10 +1,10 @@
-//! Continuous clock mode: the clock goes on after an EnDat 2.1 position, and further positions follow without a mode command.
+//! Continuous clock mode: the clock continues after an EnDat 2.1 position, and further positions follow without a mode command.
 
 use super::{Command, Drive, Encoder, LatchEdge, Phase, State, Symbol};
 use crate::Time;
 
 impl Encoder {
-    /// The edge that this encoder would take the next position at, if the clock may go on now.
+    /// The edge at which this encoder would latch the next position, if the clock may continue now.
     pub(super) fn next_latch(&self) -> Option<LatchEdge> {
         let position = self.work.command == Some(Command::SendPosition);
         self.config.continuous.filter(|_| position)
@@ -40,7 +40,7 @@ impl Encoder {
         self.launch(time, Drive::Low, Symbol::Lead);
     }
 
-    /// The clock has been HIGH for so long that the mode is left.
+    /// True if the clock has been HIGH long enough to end the mode.
     pub(super) fn is_left(&self) -> bool {
         self.clock && self.in_continuous_mode()
     }

@@ -1,20 +1,20 @@
 //! Real encoders as data.
 //!
-//! Position bits, command sets and the LC's limit of the clock LOW time come from the literature named at each device. What is
-//! marked "assumed" is the usual figure of that kind of device and must be read from a real one (words 13, 17, 20, 21, 39, and
+//! The literature named at each device gives position bits, command sets and the LC's limit of the clock LOW time. Values
+//! marked "assumed" are typical for that kind of device and must be read from a real one (words 13, 17, 20, 21, 39, and
 //! word 25 of area 0xBD).
 
 use super::{EncoderConfig, TypePlate};
 use crate::{Time, MS, NS, US};
 
-/// A device that can be bought.
+/// A commercial device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Device {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
     /// Position bits.
     pub position_bits: u32,
-    /// Understands EnDat 2.2.
+    /// Supports EnDat 2.2.
     pub endat22: bool,
     /// Rotary or angle encoder.
     pub rotary: bool,
@@ -34,7 +34,7 @@ pub struct Device {
     pub safety: bool,
 }
 
-/// A rotary EnDat 2.2 encoder to vary.
+/// A rotary EnDat 2.2 encoder as a base for others.
 const ROTARY: Device = Device {
     name: "",
     position_bits: 25,
@@ -58,8 +58,8 @@ pub const RCN_8510: Device = Device {
     ..ROTARY
 };
 
-/// Linear encoder with 36 bits of 10 nm at 2 MHz, as in Kim et al. (Electronics 2024, 13, 1101). The clock may be LOW for 30 us
-/// only. tcal and signal period: assumed.
+/// Linear encoder with 36 bits of 10 nm at 2 MHz, as in Kim et al. (Electronics 2024, 13, 1101). The clock may be LOW for only
+/// 30 us. tcal and signal period: assumed.
 pub const LC_416: Device = Device {
     name: "LC 416",
     position_bits: 36,
@@ -90,7 +90,7 @@ pub const EQN_1337: Device = Device {
     ..ROTARY
 };
 
-/// Rotary encoder of 13 bits that knows only EnDat 2.1, with 512 or 2048 periods and at most 2 MHz (AMK's and PWM 20's manuals).
+/// Rotary encoder of 13 bits, EnDat 2.1 only, with 512 or 2048 periods and at most 2 MHz (AMK's and PWM 20's manuals).
 /// tcal: assumed.
 pub const ECN_113: Device = Device {
     name: "ECN 113",
@@ -129,7 +129,7 @@ pub const DEVICES: [Device; 7] = [
 ];
 
 impl Device {
-    /// An encoder of this kind, to be changed at will.
+    /// A configurable encoder of this kind.
     pub fn encoder(&self) -> EncoderConfig {
         let generic = if self.endat22 {
             EncoderConfig::endat22(self.position_bits)

@@ -1,9 +1,9 @@
-//! The additional data: which are selected, and what they say.
+//! The additional data: selection and content.
 
 use super::{memory::area, Encoder, EncoderConfig, Registers};
 use crate::{frame::Info, Time, US};
 
-/// The selections that 0x4F and 0x5F end.
+/// The selections, which 0x4F and 0x5F end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Selection {
     /// MRS code 0x40 to 0x4E.
@@ -18,7 +18,7 @@ pub(super) fn is_info_code(mrs: u8) -> bool {
 }
 
 impl Selection {
-    /// Takes a selection, unless the encoder does not have those additional data.
+    /// Applies a selection, unless the encoder lacks those additional data.
     pub fn select(&mut self, mrs: u8, config: &EncoderConfig) -> Result<(), ()> {
         let (group, supported) = match mrs & 0xF0 {
             0x40 => (&mut self.first, config.plate.infos_1),
@@ -36,8 +36,8 @@ impl Selection {
     }
 }
 
-/// Positions that are sent in three parts: taken when the first part is sent, so that the parts fit together. When a real
-/// encoder takes them is not published.
+/// Positions sent in three parts: latched when the first part is sent, so that the parts are consistent. The latch time of real
+/// encoders is not published.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Parts {
     position_2: u64,
@@ -45,7 +45,7 @@ pub(super) struct Parts {
 }
 
 impl Encoder {
-    /// The selected additional data in the order in which they are sent: 2 before 1.
+    /// The selected additional data in the order of transmission: 2 before 1.
     pub(super) fn infos(&mut self, time: Time, position: u64) -> Vec<Info> {
         let selected = [self.selection.second, self.selection.first];
         let status = Info {

@@ -1,4 +1,4 @@
-//! What the commands do inside the encoder: selecting, reading, writing, restarting.
+//! Effects of the commands inside the encoder: selecting, reading, writing, restarting.
 
 use super::{
     command::Command,
@@ -9,25 +9,25 @@ use super::{
 use crate::{frame::Parameter, Time};
 use std::ops::RangeInclusive;
 
-/// Something that takes its time; until then an EnDat 2.2 encoder says Busy.
+/// A job with a duration; until its end an EnDat 2.2 encoder reports Busy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Work {
     Select(u8, u8),
     Read(Place),
-    /// The word is stored at the end: a loss of supply before that leaves the old one.
+    /// The word is stored at the end: a loss of supply before that keeps the old one.
     Write(Place, u16),
     Test(Parameter),
 }
 
-/// What becomes of a command with a parameter.
+/// Outcome of a command with a parameter.
 pub(super) struct Reply {
     pub fields: Parameter,
-    /// When the answer may begin.
+    /// Earliest time of the answer.
     pub ready: Time,
 }
 
 impl Encoder {
-    /// Brings alarms and jobs up to date.
+    /// Updates alarms and jobs.
     pub(super) fn settle(&mut self, time: Time) {
         if let Some((done, work)) = self.job.filter(|j| j.0 <= time) {
             self.job = None;
@@ -84,7 +84,7 @@ impl Encoder {
         let mut reply = fields;
         match command {
             Command::SelectMemory => {
-                // Without a block there is block 0; its place in this command is an assumption.
+                // Block 0 by default; the place of the block in this command is an assumption.
                 let block = if address == area::SECTION_2 {
                     fields.data as u8
                 } else {
@@ -102,7 +102,7 @@ impl Encoder {
                 let place = self.memory.place(address)?;
                 match self.memory.check_write(place, fields.data) {
                     Ok(()) => self.start_write(time, place, fields.data),
-                    // The receiver sees from the echo that the word is not what it sent.
+                    // The receiver detects from the echo that the word differs.
                     Err(source) => {
                         self.refuse(source);
                         reply.data = self.read(place);
@@ -176,7 +176,7 @@ impl Encoder {
         Ok(())
     }
 
-    /// Notes why something is not done.
+    /// Notes the reason of a refusal.
     pub(super) fn refuse(&mut self, source: ErrorSource) {
         self.status.sources |= source.bit();
         if let Some(frame) = self.frames.last_mut() {
@@ -184,7 +184,7 @@ impl Encoder {
         }
     }
 
-    /// Everything as after power-up, but for what the memory keeps.
+    /// State as after power-up, except for the stored memory.
     pub(super) fn restart(&mut self, time: Time) {
         self.job = None;
         self.selection = Default::default();
@@ -193,7 +193,7 @@ impl Encoder {
         self.status.clear(time);
     }
 
-    /// Whether the short recovery time is selected, and there is one.
+    /// True if the short recovery time is selected and supported.
     pub(super) fn short_recovery(&self) -> bool {
         let word = self
             .memory

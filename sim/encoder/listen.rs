@@ -8,15 +8,15 @@ use crate::{frame::Parameter, Time};
 
 /// Edges of a frame, numbered as in the drawing of the parent module.
 mod edge {
-    /// The rising edges that take the first and the last bit of the mode command.
+    /// The rising edges that sample the first and the last bit of the mode command.
     pub const COMMAND: std::ops::RangeInclusive<u32> = 3..=8;
-    /// The rising edges that take the first and the last bit of a parameter.
+    /// The rising edges that sample the first and the last bit of a parameter.
     pub const PARAMETER: std::ops::RangeInclusive<u32> = 9..=32;
     /// The falling edge after which the encoder drives LOW: one period after the receiver's release.
     pub const DRIVE_LOW: u32 = 10;
     /// The earliest rising edge that can launch a start bit.
     pub const EARLIEST_START: u32 = 11;
-    /// How much later everything is after a parameter.
+    /// Shift of all edges after a parameter.
     pub const PARAMETER_BITS: u32 = 24;
 }
 
@@ -74,7 +74,7 @@ impl Encoder {
         }
     }
 
-    /// An edge of a frame without parameter as the edge of this frame.
+    /// Converts an edge of a frame without parameter to this frame.
     fn later(&self, edge: u32) -> u32 {
         match self.work.command {
             Some(c) if c.has_parameter() => edge + edge::PARAMETER_BITS,
@@ -139,7 +139,7 @@ impl Encoder {
         }
     }
 
-    /// Takes one bit from the receiver.
+    /// Samples one bit from the receiver.
     pub(super) fn shift_in(&mut self, time: Time, edge: u32, data: Drive) {
         if data == Drive::Released {
             self.violate(time, Violation::CommandNotDriven { edge });
@@ -189,7 +189,7 @@ impl Encoder {
                 self.work.ready = reply.ready;
                 self.work.phase = Phase::Wait;
             }
-            // What a refused access looks like is not published: silence, as after an unknown command.
+            // The response to a refused access is not published: no answer, as after an unknown command.
             Err(source) => self.refuse(source),
         }
     }
@@ -223,7 +223,7 @@ impl Encoder {
         );
     }
 
-    /// Takes a position and draws what is random in its frame.
+    /// Latches a position and draws the random values of its frame.
     pub(super) fn new_frame(&mut self, time: Time) {
         self.settle(time);
         let index = self.frames.count();
@@ -234,7 +234,7 @@ impl Encoder {
             .tm_short
             .clone()
             .unwrap_or(self.config.tm.clone());
-        // The same random number in either range: the selection of one must not change what follows.
+        // The same random number in both ranges: the selection must not affect later values.
         let mut tm_short = self.rng.clone().in_range(*short.start(), *short.end());
         let mut tm = self
             .rng

@@ -1,4 +1,4 @@
-//! What an encoder notes down: one record for each frame.
+//! The encoder's log: one record for each frame.
 
 use super::ErrorSource;
 use crate::{
@@ -9,26 +9,26 @@ use crate::{
     Time, US,
 };
 
-/// How a frame ended, seen from the encoder.
+/// End of a frame, seen from the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FrameEnd {
-    /// It is still going on.
+    /// The frame is still running.
     #[default]
     Running,
     /// All bits were clocked out and the recovery time was respected.
     Complete,
     /// The clock stopped HIGH before the answer was complete.
     Stopped,
-    /// The clock went on after the answer, or came back within the recovery time.
+    /// The clock continued after the answer, or returned within the recovery time.
     Overrun,
     /// The encoder lost its supply or its plug.
     Lost,
 }
 
-/// What an answer consists of.
+/// Content of an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AnswerKind {
-    /// There is none (yet).
+    /// No answer (yet).
     #[default]
     None,
     /// F1, perhaps F2, position, perhaps additional data.
@@ -39,7 +39,7 @@ pub enum AnswerKind {
     TestValues,
 }
 
-/// What the receiver sent after an answer.
+/// Supplement of the receiver after an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Supplement {
     /// LOW bits before the start bit.
@@ -55,7 +55,7 @@ pub struct Supplement {
 pub struct FrameLog {
     /// Number of the frame, 0 = first.
     pub index: u64,
-    /// First falling clock edge: the moment of the position.
+    /// Time of the first falling clock edge, and so of the position.
     pub first_fall: Time,
     /// First rising clock edge.
     pub first_rise: Time,
@@ -67,23 +67,23 @@ pub struct FrameLog {
     pub period: Time,
     /// The mode command.
     pub command: Option<u8>,
-    /// The position that was latched.
+    /// The latched position.
     pub position: u64,
     /// Number of the rising edge that launched the start bit (`s`).
     pub start_edge: Option<u32>,
-    /// When the start bit was launched.
+    /// Time when the start bit was launched.
     pub start_time: Time,
     /// The answer, with its defects.
     pub answer: AnswerBits,
-    /// Whether the answer has an F2.
+    /// True if the answer has an F2.
     pub has_f2: bool,
     /// Width of the position in the answer.
     pub position_bits: u32,
-    /// Taken in continuous clock mode: it has no mode command of its own, and edges count from `first_fall`.
+    /// Latched in continuous clock mode: without a mode command; edges count from `first_fall`.
     pub continuous: bool,
-    /// What the receiver sent with an EnDat 2.1 command.
+    /// Parameter that the receiver sent with an EnDat 2.1 command.
     pub parameter: Option<Parameter>,
-    /// What the answer consists of.
+    /// Content of the answer.
     pub kind: AnswerKind,
     /// The error bits that were sent.
     pub errors: (bool, Option<bool>),
@@ -93,19 +93,19 @@ pub struct FrameLog {
     pub crc: u8,
     /// Additional data in the order sent (2 before 1), each with its CRC as sent.
     pub infos: Vec<(Info, u8)>,
-    /// What the receiver sent after the answer.
+    /// Supplement of the receiver after the answer.
     pub supplement: Option<Supplement>,
-    /// Rising edges of the supplement, less the one that would end a frame without it.
+    /// Rising edges of the supplement, minus the one that would end a frame without it.
     pub supplement_edges: u32,
-    /// Why the encoder did not do what was asked.
+    /// Reason of a refusal.
     pub refused: Option<ErrorSource>,
     /// DATA fell at the end of the recovery time.
     pub data_fall: Option<Time>,
-    /// How it ended.
+    /// End of the frame.
     pub end: FrameEnd,
 }
 
-/// A clock as slow as this measures the delay: 200 kHz, as near as a frame shows it.
+/// Clock period that measures the delay: 200 kHz, with some tolerance.
 const SLOW: Time = 49 * US / 10;
 
 impl FrameLog {
@@ -121,18 +121,18 @@ impl FrameLog {
         }
     }
 
-    /// Rising edges that this frame must have: `s` + answer bits + supplement; none if the answer never began.
+    /// Rising edges that this frame must have: `s` + answer bits + supplement; `None` if the answer never began.
     pub fn expected_rising_edges(&self) -> Option<u32> {
         self.start_edge
             .map(|s| s + self.answer.len + self.supplement_edges)
     }
 
-    /// Whether it has all its pulses, and no more.
+    /// True if it has exactly its pulses.
     pub fn is_whole(&self) -> bool {
         self.end == FrameEnd::Complete && self.expected_rising_edges() == Some(self.rising_edges)
     }
 
-    /// Whether it measured the delay for `position`, a frame behind it for the same trigger: at a slower clock, if that one's is not slow itself.
+    /// True if it measured the delay for `position`, a later frame of the same trigger: at a slower clock, unless that frame is slow itself.
     pub fn measures_for(&self, position: &Self) -> bool {
         let is_slower = self.period > position.period || position.period >= SLOW;
         self.index < position.index && is_slower
@@ -143,7 +143,7 @@ impl FrameLog {
         self.answer.len - Info::BITS * self.infos.len() as u32
     }
 
-    /// What bit `index` of the answer is.
+    /// Field of answer bit `index`.
     pub fn field(&self, index: u32) -> Field {
         let head = self.head_len();
         match self.kind {
@@ -157,7 +157,7 @@ impl FrameLog {
         }
     }
 
-    /// Whether the answer is, bit by bit, what a sound encoder would send for this position and these additional data.
+    /// True if the answer equals, bit by bit, that of a good encoder with this position and these additional data.
     pub fn is_true_answer(&self, position_bits: u32, f2: bool) -> bool {
         self.answer == self.true_position((false, f2.then_some(true)), position_bits)
     }
@@ -176,8 +176,8 @@ impl FrameLog {
         bits
     }
 
-    /// Whether bit `index` of the answer is another one than that of its position, error bits, parameter or additional data. What
-    /// test values should be is not recorded.
+    /// True if answer bit `index` differs from its position, error bits, parameter or additional data. The
+    /// correct test values are not recorded.
     pub fn is_wrong_bit(&self, index: u32) -> bool {
         let good = match (self.kind, self.reply) {
             (AnswerKind::Position, _) => self.true_position(self.errors, self.position_bits),
@@ -187,7 +187,7 @@ impl FrameLog {
         index < self.answer.len && good.get(index) != self.answer.get(index)
     }
 
-    /// The CRC that fits the bits of the part of the answer with bit `index`, and the one that came.
+    /// The expected CRC of the part of the answer with bit `index`, and the received one.
     pub fn crcs(&self, index: u32) -> (u8, u8) {
         let head = self.head_len();
         let (first, len) = match index.checked_sub(head) {
@@ -200,7 +200,7 @@ impl FrameLog {
         (crc5(covered), came)
     }
 
-    /// Whether every CRC of the answer fits what it covers.
+    /// True if every CRC of the answer matches its bits.
     pub fn all_crcs_fit(&self) -> bool {
         let parts = (0..=self.infos.len() as u32).map(|n| match n {
             0 => 0,

@@ -1,9 +1,9 @@
-//! The words an encoder keeps, in areas that are selected by an MRS code.
+//! The words of an encoder, in areas selected by an MRS code.
 
 use super::{status::Status, words, EncoderConfig, ErrorSource};
 use std::collections::BTreeMap;
 
-/// MRS codes of the areas, as TI's and ADDI-DATA's drivers have them.
+/// MRS codes of the areas, as in TI's and ADDI-DATA's drivers.
 pub mod area {
     /// Encoder manufacturer, words 4 to 15 at addresses 0x04 to 0x0F.
     pub const MANUFACTURER_1: u8 = 0xA1;
@@ -35,11 +35,11 @@ pub mod status_word {
     pub const FUNCTION: u8 = 3;
 }
 
-/// Areas that bit 0, 1, 2 of the protection word protect. Which bit protects what is not published: an assumption.
+/// Areas protected by bit 0, 1, 2 of the protection word. The assignment is not published: an assumption.
 const PROTECTED_BY_BIT: [u8; 3] = [area::OPERATING_PARAMETERS, area::OEM_1, area::SECTION_2];
 const BLOCK_WORDS: usize = 256;
 
-/// Codes that the interface description gives to areas, whether an encoder has them or not.
+/// MRS codes of areas in the interface description, supported or not.
 fn is_area_code(mrs: u8) -> bool {
     (0xA1..=0xBF).contains(&mrs) && mrs & 1 == 1
 }
@@ -51,7 +51,7 @@ struct Area {
     writable: bool,
 }
 
-/// Where an access goes.
+/// Address of an access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     pub mrs: u8,
@@ -73,7 +73,7 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// Memory as it leaves the factory.
+    /// Memory as delivered by the factory.
     pub fn new(config: &EncoderConfig) -> Self {
         use area::*;
         let mut areas = BTreeMap::new();
@@ -102,7 +102,7 @@ impl Memory {
         }
     }
 
-    /// What a loss of supply, or a reset, leaves.
+    /// State after a loss of supply, or a reset.
     pub fn restart(&mut self, config: &EncoderConfig) {
         self.selected = None;
         self.set(
@@ -115,7 +115,7 @@ impl Memory {
         );
     }
 
-    /// Whether this area can be selected.
+    /// Checks that this area can be selected.
     pub fn check_area(&self, mrs: u8, block: u8) -> Result<(), ErrorSource> {
         match self.areas.get(&mrs) {
             Some(a) if usize::from(block) * BLOCK_WORDS < a.words.len() => Ok(()),
@@ -131,7 +131,7 @@ impl Memory {
         self.place_in(mrs, block, address)
     }
 
-    /// The place of an address in an area that the encoder has.
+    /// The place of an address in an existing area.
     pub fn place_in(&self, mrs: u8, block: u8, address: u8) -> Result<Place, ErrorSource> {
         let place = Place {
             mrs,
@@ -144,7 +144,7 @@ impl Memory {
         known.then_some(place).ok_or(ErrorSource::Address)
     }
 
-    /// Whether this word may be written with this value.
+    /// Checks that this value may be written to this word.
     pub fn check_write(&self, place: Place, data: u16) -> Result<(), ErrorSource> {
         let protection = self.word(area::OPERATING_STATUS, status_word::PROTECTION);
         let bit = PROTECTED_BY_BIT.iter().position(|m| *m == place.mrs);
@@ -156,7 +156,7 @@ impl Memory {
             (area::OPERATING_STATUS, status_word::PROTECTION) if protection & !data != 0 => {
                 Err(ErrorSource::ClearProtection)
             }
-            // Only whole words can be cleared, and nobody can raise an alarm from outside.
+            // Only whole words can be cleared, and alarms cannot be set from outside.
             (area::OPERATING_STATUS, status_word::ALARMS | status_word::WARNINGS) if data != 0 => {
                 Err(ErrorSource::Protected)
             }
@@ -164,7 +164,7 @@ impl Memory {
         }
     }
 
-    /// The word at a place that [`Memory::place`] gave. Alarms and warnings live elsewhere.
+    /// The word at a place from [`Memory::place`]. Alarms and warnings are stored separately.
     pub fn get(&self, place: Place, status: &Status) -> u16 {
         match (place.mrs, place.address) {
             (area::OPERATING_STATUS, status_word::ALARMS) => status.alarms,
@@ -194,7 +194,7 @@ impl Memory {
         })
     }
 
-    /// What the encoder adds to its position.
+    /// Offset that the encoder adds to its position.
     pub fn datum_shift(&self) -> i32 {
         let word = |address| u32::from(self.word(area::OPERATING_PARAMETERS, address));
         (word(1) << 16 | word(0)) as i32

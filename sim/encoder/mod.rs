@@ -1,7 +1,7 @@
 //! The encoder at the far end of the cable, written from the encoder's side of the interface description.
 //!
-//! It works in picoseconds and only at edges: [`Encoder::clock_edge`] tells it of the clock, [`Encoder::next_event`] says when it
-//! wants to act by itself, [`Encoder::advance`] lets it act, [`Encoder::output`] is what it does to DATA.
+//! It works in picoseconds and only at edges: [`Encoder::clock_edge`] receives the clock, [`Encoder::next_event`] returns the time of its
+//! next action, [`Encoder::advance`] executes it, [`Encoder::output`] is its drive on DATA.
 //!
 //! ```text
 //!          F1   R1 F2 R2 F3 R3      F8 R8 F9 R9 F10 R10 F11 R11       R(s)      R(s+L-1) R(s+L)
@@ -9,8 +9,8 @@
 //! DATA  idle| released      | command bits | released|  LOW            | S  ..   | CRC0     | HIGH for tm | LOW = idle
 //! ```
 //!
-//! An EnDat 2.1 command with a parameter has 24 more bits after the mode command, and everything behind them is 24 edges later. After
-//! the EnDat 2.2 commands with a supplement the clock is parked LOW behind the last bit:
+//! An EnDat 2.1 command with a parameter has 24 more bits after the mode command, and everything after them is 24 edges later. After
+//! the EnDat 2.2 commands with a supplement the clock is parked LOW after the last bit:
 //!
 //! ```text
 //!       R(c) F(c+1)     R'1 F'1 R'2 F'2      F'8 R'9 F'9 R'10     F'32 R'33 F'33 R'34 F'34 R'35
@@ -18,7 +18,7 @@
 //! DATA   CRC0 ..| released  | 0     ..   0   | 1   | 8 and 16 bits        | LOW | HIGH for tm    | LOW = idle
 //! ```
 //!
-//! It is strict: what the receiver does wrong is noted as a [`Violation`]. It shares no code with the core.
+//! It is strict: every error of the receiver is noted as a [`Violation`]. It shares no code with the core.
 
 mod answer;
 mod clock_check;
@@ -59,10 +59,10 @@ use memory::Memory;
 use status::Status;
 use std::collections::VecDeque;
 
-/// What a driver does to DATA.
+/// Drive of a driver on DATA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drive {
-    /// Nothing: the driver is off.
+    /// The driver is off.
     Released,
     /// Drives LOW.
     Low,
@@ -71,7 +71,7 @@ pub enum Drive {
 }
 
 impl Drive {
-    /// Driving this level.
+    /// Drives this level.
     pub fn level(high: bool) -> Self {
         if high {
             Self::High
@@ -88,7 +88,7 @@ impl Drive {
     }
 }
 
-/// What the encoder means by its output. It travels along the line with the level, so that a test can tell which bit
+/// Meaning of the encoder's output. It travels along the line with the level, so that a test knows which bit
 /// the receiver sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symbol {
@@ -102,7 +102,7 @@ pub enum Symbol {
     Bit(u8),
     /// HIGH for the recovery time.
     Tail,
-    /// Not there: unplugged, or without supply.
+    /// No encoder: unplugged, or without supply.
     Absent,
 }
 
@@ -122,9 +122,9 @@ impl std::fmt::Display for Symbol {
 /// Drive and meaning together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// What the driver does.
+    /// Drive.
     pub drive: Drive,
-    /// What it means.
+    /// Meaning.
     pub symbol: Symbol,
 }
 
@@ -134,46 +134,46 @@ enum State {
     Idle,
     /// From there to the edge after the last bit of answer and supplement.
     Frame,
-    /// Continuous clock mode: from the edge after an answer to the one that takes the next position.
+    /// Continuous clock mode: from the edge after an answer to the one that latches the next position.
     Gap,
     /// DATA HIGH for tm.
     Recovery,
-    /// Lost in the protocol: waits until the clock has been HIGH for long.
+    /// Out of step: waits until the clock has been HIGH for long.
     Deaf,
     /// Without supply or plug.
     Off,
 }
 
-/// Where a frame stands.
+/// Progress of a frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 enum Phase {
-    /// The command comes in.
+    /// Receives the command.
     #[default]
     Listen,
     /// LOW until the answer is ready.
     Wait,
-    /// Answer bits go out; this one is next.
+    /// Sends the answer; this bit is next.
     Answer(u32),
     /// CLOCK LOW between answer and supplement.
     Park {
-        /// When DATA is released.
+        /// Time when DATA is released.
         release: Time,
     },
-    /// The supplement comes in.
+    /// Receives the supplement.
     Supplement,
 }
 
 /// Working data of the frame in progress.
 #[derive(Clone, Default)]
 struct Work {
-    /// Falling edges as counted, and as they came.
+    /// Falling edges as counted, and as received.
     falls: u32,
     true_falls: u32,
     phase: Phase,
     /// Bits of command, parameter or supplement so far.
     shift: u64,
     command: Option<Command>,
-    /// The answer begins not before this.
+    /// Earliest time of the answer.
     ready: Time,
     /// Rising edges and bits of the supplement so far.
     supplement: supplement::Progress,
@@ -186,7 +186,7 @@ struct Work {
     defects: Vec<Defect>,
 }
 
-/// The first entry of a queue if its time has come.
+/// Removes and returns the first entry of a queue if it is due.
 fn take_due<T>(queue: &mut VecDeque<(Time, T)>, time: Time) -> Option<(Time, T)> {
     if queue.front()?.0 > time {
         return None;
@@ -194,7 +194,7 @@ fn take_due<T>(queue: &mut VecDeque<(Time, T)>, time: Time) -> Option<(Time, T)>
     queue.pop_front()
 }
 
-/// What additional data acknowledge.
+/// Data acknowledged by additional data.
 #[derive(Clone, Copy, Debug, Default)]
 struct Registers {
     /// Selected area and block (0x47).
@@ -205,7 +205,7 @@ struct Registers {
     test: crate::frame::Parameter,
 }
 
-/// An encoder. See the module's text.
+/// An encoder; see the module documentation.
 #[derive(Clone)]
 pub struct Encoder {
     config: EncoderConfig,
@@ -219,20 +219,20 @@ pub struct Encoder {
     glitching: bool,
     pending: VecDeque<(Time, Output)>,
     glitch_ends: VecDeque<(Time, bool)>,
-    /// Supply or plug going off and on, in order of time.
+    /// Switching of supply or plug, in order of time.
     supply: VecDeque<(Time, bool)>,
     /// End of the recovery time.
     recovery_end: Option<Time>,
-    /// Restarts after a reset command: from when to when.
+    /// Restart after a reset command: start and end.
     reset: Option<(Time, Time)>,
     memory: Memory,
     status: Status,
     selection: Selection,
     registers: Registers,
     parts: Parts,
-    /// A memory request in progress, and when it will be done.
+    /// A memory request in progress, and its end.
     job: Option<(Time, jobs::Work)>,
-    /// When the clock will have kept its level for too long.
+    /// Time when the clock has kept its level for too long.
     watchdog: Option<Time>,
     frames: Journal<FrameLog>,
     violations: Journal<(Time, Violation)>,
@@ -271,25 +271,25 @@ impl Encoder {
         }
     }
 
-    /// Everything random in it, positions too, is from now on that of another seed.
+    /// Changes the seed of all random values, including positions.
     pub fn reseed(&mut self, seed: u64) {
         self.rng = Rng::new(seed);
     }
 
-    /// Without supply or plug for a while; only one that is on, and only with a moment that is to come.
+    /// Removes supply or plug for a while; only if it is on, and only in the future.
     pub fn unplug(&mut self, from: Time, until: Time) {
         let on = until + self.config.start_up;
         self.supply.extend([(from, false), (on, true)]);
         self.supply.make_contiguous().sort_by_key(|s| s.0);
     }
 
-    /// A defect of the frame that comes next.
+    /// Adds a defect to the next frame.
     pub fn spoil_next(&mut self, defect: Defect) {
         let frame = self.frames.count();
         self.config.defects.push((frame..=frame, defect));
     }
 
-    /// The same of so many frames; it takes the place of one of its kind.
+    /// Adds a defect to the next `frames` frames; it replaces one of the same kind.
     pub fn spoil(&mut self, frames: u64, defect: Defect) {
         let kind = std::mem::discriminant(&defect);
         let defects = &mut self.config.defects;
@@ -299,30 +299,30 @@ impl Encoder {
         self.config.defects.push((first..=last, defect));
     }
 
-    /// Nothing is wrong with it from `time` on, and it tells nothing that was.
+    /// Removes all faults from `time` on, and clears earlier reports.
     pub fn heal(&mut self, time: Time) {
         self.config.defects.clear();
         self.config.causes.clear();
         self.status.clear(time);
     }
 
-    /// Its plug is pulled, or put in again, at `time`; what was planned for it is forgotten.
+    /// Unplugs it, or plugs it in, at `time`; cancels planned switching.
     pub fn switch_supply(&mut self, time: Time, on: bool) {
         let delay = if on { self.config.start_up } else { 0 };
         self.supply = VecDeque::from([(time + delay, on)]);
     }
 
-    /// It has supply.
+    /// True if it has supply.
     pub fn is_on(&self) -> bool {
         self.state != State::Off
     }
 
-    /// Its type plate.
+    /// Configuration.
     pub fn config(&self) -> &EncoderConfig {
         &self.config
     }
 
-    /// Notes only so many frames and violations, the last ones: an encoder that runs for days.
+    /// Keeps only the last `most` frames and violations: for an encoder that runs for days.
     pub fn keep(&mut self, most: usize) {
         self.frames.keep(most);
         self.violations.keep(most);
@@ -333,12 +333,12 @@ impl Encoder {
         &self.frames
     }
 
-    /// What the receiver did wrong so far, in order of time.
+    /// Violations of the receiver so far, in order of time.
     pub fn violations(&self) -> &[(Time, Violation)] {
         &self.violations
     }
 
-    /// What it does to DATA at present.
+    /// Present drive on DATA.
     pub fn output(&self) -> Output {
         let mut output = self.output;
         if self.glitching {
@@ -347,25 +347,25 @@ impl Encoder {
         output
     }
 
-    /// Ready for a frame: DATA has been LOW for tR, and no reset is going on.
+    /// True if ready for a frame: DATA has been LOW for tR, and no reset is under way.
     pub fn is_ready(&self, time: Time) -> bool {
         let in_reset = self.reset.is_some_and(|r| time < r.1);
         self.state == State::Idle && time >= self.ready_at && !in_reset
     }
 
-    /// From now on this is, or will be, wrong with it too.
+    /// Adds a fault, from its time on.
     pub fn add_cause(&mut self, cause: Cause) {
         self.config.causes.push(cause);
     }
 
-    /// A word of an area that the encoder has (block 0), whichever area is selected, as of the last frame.
+    /// A word of an existing area (block 0), independent of the selection, as of the last frame.
     pub fn word(&self, mrs: u8, address: u8) -> Option<u16> {
         self.memory.check_area(mrs, 0).ok()?;
         let place = self.memory.place_in(mrs, 0, address).ok()?;
         Some(self.memory.get(place, &self.status))
     }
 
-    /// When it acts next without being asked.
+    /// Time of its next action.
     pub fn next_event(&self) -> Option<Time> {
         [
             self.pending.front().map(|p| p.0),
@@ -379,7 +379,7 @@ impl Encoder {
         .min()
     }
 
-    /// Acts as it wants to at `time`, which must be [`Encoder::next_event`].
+    /// Executes its action at `time`, which must be [`Encoder::next_event`].
     pub fn advance(&mut self, time: Time) {
         if let Some((_, on)) = take_due(&mut self.supply, time) {
             self.switch(time, on);
@@ -399,7 +399,7 @@ impl Encoder {
         }
     }
 
-    /// The clock at the encoder's pin changes to `level`, while the receiver does `data` to DATA there.
+    /// The clock at the encoder's pin changes to `level`, while the receiver drives DATA with `data`.
     pub fn clock_edge(&mut self, time: Time, level: bool, data: Drive) {
         if level == self.clock {
             return;
@@ -418,7 +418,7 @@ impl Encoder {
         self.watchdog = self.patience().map(|span| time + span);
     }
 
-    /// Changes the output at `time`, as far as the frame's defects let it.
+    /// Changes the output at `time`, subject to the frame's defects.
     fn emit(&mut self, time: Time, drive: Drive, symbol: Symbol) {
         let number = match symbol {
             Symbol::Bit(i) => Some(u32::from(i)),
@@ -433,7 +433,7 @@ impl Encoder {
             Defect::Open if symbol != Symbol::Idle => Drive::Released,
             _ => drive,
         });
-        // A slow release must not come after the next thing the encoder wants to do.
+        // A delayed release must not come after the next output change.
         while self.pending.back().is_some_and(|p| p.0 >= time) {
             self.pending.pop_back();
         }

@@ -1,4 +1,4 @@
-//! The end of a frame: recovery time, a clock that stops or goes on when it must not, loss of supply.
+//! The end of a frame: recovery time, a clock that stops or continues illegally, loss of supply.
 
 use super::{
     Command, Defect, Drive, Encoder, ErrorSource, FrameEnd, LatchEdge, Output, State, Symbol,
@@ -70,7 +70,7 @@ impl Encoder {
         self.state = State::Deaf;
     }
 
-    /// How long the clock may keep its level from now on.
+    /// Longest time for which the clock may keep its level from now on.
     pub(super) fn patience(&self) -> Option<Time> {
         match self.state {
             State::Frame | State::Gap if !self.clock => Some(self.config.max_clock_low),
@@ -121,12 +121,12 @@ impl Encoder {
         self.emit(time, Drive::Low, Symbol::Idle);
     }
 
-    /// Supply or plug goes off or on.
+    /// Switches supply or plug off or on.
     pub(super) fn switch(&mut self, time: Time, on: bool) {
         self.pending.clear();
         self.recovery_end = None;
         self.watchdog = None;
-        self.settle(time); // what was written before now stays
+        self.settle(time); // earlier writes are kept
         if let Some(f) = self.frames.last_mut() {
             if f.end == FrameEnd::Running {
                 f.end = FrameEnd::Lost;

@@ -1,9 +1,9 @@
-//! Alarms, warnings and error sources: what is wrong, since when, and until somebody clears it.
+//! Alarms, warnings and error sources: faults, their start, and their latching until cleared.
 
 use super::{Cause, EncoderConfig};
 use crate::Time;
 
-/// Why an encoder refuses something; the numbers are those of the ADDI-DATA driver.
+/// Reasons of a refusal; the numbers are those of the ADDI-DATA driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorSource {
     /// Mode command that does not exist.
@@ -22,12 +22,12 @@ pub enum ErrorSource {
     ClearProtection = 10,
     /// Block that the section 2 memory does not have.
     Block = 11,
-    /// Additional data that do not exist here.
+    /// Additional data that this encoder does not support.
     InfoNotSupported = 13,
 }
 
 impl ErrorSource {
-    /// All that this encoder tells.
+    /// All supported sources.
     pub const ALL: [Self; 9] = [
         Self::ModeCommand,
         Self::MrsCode,
@@ -40,7 +40,7 @@ impl ErrorSource {
         Self::InfoNotSupported,
     ];
 
-    /// Its bit in additional data 0x59. Where the bits are is not published; number n stands in bit n - 1 here.
+    /// Bit in additional data 0x59. The bit positions are not published; number n is in bit n - 1 here.
     pub fn bit(self) -> u16 {
         1 << (self as u16 - 1)
     }
@@ -52,12 +52,12 @@ pub(super) struct Status {
     pub alarms: u16,
     pub warnings: u16,
     pub sources: u16,
-    /// Causes have been looked at up to here.
+    /// Causes have been evaluated up to this time.
     looked_at: Time,
 }
 
 impl Status {
-    /// Latches what was wrong between the last look and now, as far as the encoder can tell it.
+    /// Latches faults between the last evaluation and now, if the encoder can report them.
     pub fn look(&mut self, time: Time, config: &EncoderConfig) {
         let active = |c: &&Cause| c.during.start <= time && c.during.end > self.looked_at;
         for cause in config.causes.iter().filter(active) {
@@ -67,7 +67,7 @@ impl Status {
         self.looked_at = time;
     }
 
-    /// Forgets everything; causes before `time` count no more.
+    /// Clears everything; causes before `time` no longer count.
     pub fn clear(&mut self, time: Time) {
         *self = Self {
             looked_at: time,

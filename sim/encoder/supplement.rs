@@ -1,28 +1,28 @@
-//! What the receiver sends after an EnDat 2.2 position: CLOCK parked LOW, LOW bits, a start bit, 8 and 16 bits, two more pulses.
+//! Supplement of the receiver after an EnDat 2.2 position: CLOCK parked LOW, LOW bits, a start bit, 8 and 16 bits, two more pulses.
 
 use super::{memory::area, Command, Drive, Encoder, Phase, Supplement, Symbol, Violation};
 use crate::{frame::Parameter, Time};
 
-/// Rising edges of a supplement besides its LOW bits and the bits of a block address: one before the first bit, start bit, 24 bits,
+/// Rising edges of a supplement, without its LOW bits and the bits of a block address: one before the first bit, start bit, 24 bits,
 /// two to the end.
 const EDGES: u32 = 28;
 const FIELD_BITS: u32 = 24;
 const BLOCK_BITS: u32 = 8;
 
-/// How far a supplement has come in.
+/// Progress of a supplement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Progress {
     zeros: u32,
     started: bool,
     bits: u32,
-    /// How many bits there will be.
+    /// Total number of bits.
     length: u32,
     /// Rising edges since the last bit.
     after: u32,
 }
 
 impl Encoder {
-    /// The answer will be followed by a supplement, as far as is known now with as few LOW bits as there may be.
+    /// Prepares for a supplement after the answer, with the fewest LOW bits.
     pub(super) fn expect_supplement(&mut self) {
         let edges = self.config.supplement_zeros + EDGES;
         self.log().supplement_edges = edges - 1;
@@ -47,7 +47,7 @@ impl Encoder {
         self.work.phase = Phase::Supplement;
     }
 
-    /// Whether the start bit of the supplement has not come yet.
+    /// True before the start bit of the supplement.
     pub(super) fn awaits_supplement(&self) -> bool {
         self.work.phase == Phase::Supplement && !self.work.supplement.started
     }
@@ -89,7 +89,7 @@ impl Encoder {
         let progress = &mut self.work.supplement;
         progress.bits += 1;
         let (shift, zeros) = (self.work.shift, progress.zeros);
-        // The MRS code tells whether a block address will follow (TI).
+        // The MRS code decides whether a block address follows (TI).
         let selects = self.work.command == Some(Command::PositionSelectMemory);
         if progress.bits == 8 && selects && shift as u8 == area::SECTION_2 {
             progress.length += BLOCK_BITS;
@@ -107,7 +107,7 @@ impl Encoder {
         });
     }
 
-    /// The receiver lets go at this edge, and the encoder takes DATA over.
+    /// The receiver releases DATA at this edge, and the encoder drives it.
     pub(super) fn fall_in_supplement(&mut self, time: Time) {
         let progress = self.work.supplement;
         let all = progress.started && progress.bits == progress.length;

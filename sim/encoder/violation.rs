@@ -1,8 +1,8 @@
-//! What a receiver can do wrong.
+//! Violations by a receiver.
 
 use crate::Time;
 
-/// A rule that the receiver broke.
+/// A rule broken by the receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Violation {
     /// The clock stopped in the middle of the answer.
@@ -12,52 +12,52 @@ pub enum Violation {
         /// Rising edges the frame should have had.
         expected: u32,
     },
-    /// The clock went on after the last bit of the answer.
+    /// The clock continued after the last bit of the answer.
     TooManyPulses {
         /// Rising edges the frame should have had.
         expected: u32,
     },
-    /// The clock stopped before the answer began. Right after a start time-out, wrong otherwise.
+    /// The clock stopped before the answer began. Correct after a start time-out, otherwise wrong.
     StoppedBeforeAnswer {
         /// Rising edges seen.
         seen: u32,
     },
     /// The clock fell within the recovery time, or before DATA had been LOW for tR.
     EarlyRestart {
-        /// How long after the last rising edge.
+        /// Time after the last rising edge.
         after: Time,
     },
-    /// The mean clock period is longer than 10 us or shorter than the encoder takes.
+    /// The mean clock period is longer than 10 us or shorter than the encoder supports.
     ClockRate {
         /// The mean period.
         period: Time,
     },
     /// A HIGH phase, or a LOW phase that is no pause, differs too much from half a period.
     PulseWidth {
-        /// Whether it was a HIGH phase.
+        /// True for a HIGH phase.
         high: bool,
-        /// How long it was.
+        /// Width.
         width: Time,
-        /// The rising edge before or after which it was.
+        /// The nearest rising edge.
         edge: u32,
     },
     /// The clock was LOW for too long.
     ClockLowTooLong,
-    /// A mode command that the encoder does not know; it stays silent.
+    /// An unknown mode command; the encoder does not answer.
     UnknownCommand(u8),
-    /// DATA was driven by nobody when a bit of the command, or of the supplement, was taken.
+    /// DATA was not driven when a bit of the command, or of the supplement, was sampled.
     CommandNotDriven {
         /// The rising edge.
         edge: u32,
     },
-    /// The clock went on before the encoder had let go of DATA for the supplement.
+    /// The clock continued before the encoder had released DATA for the supplement.
     EarlySupplement {
-        /// How long the clock was LOW.
+        /// Duration of clock LOW.
         pause: Time,
     },
     /// Too few LOW bits before the start bit of the supplement.
     SupplementZeros {
-        /// How many there were.
+        /// Number of LOW bits.
         seen: u32,
     },
     /// The clock stopped before the start bit of a supplement.
@@ -65,14 +65,14 @@ pub enum Violation {
         /// Rising edges seen.
         seen: u32,
     },
-    /// An EnDat 2.1 command with a parameter too soon after the one before.
+    /// An EnDat 2.1 command with a parameter too soon after the previous one.
     ParameterGap {
-        /// How long after the last rising edge.
+        /// Time after the last rising edge.
         after: Time,
     },
     /// A frame while the encoder was starting again after a reset.
     DuringReset {
-        /// How long after the reset.
+        /// Time after the reset.
         after: Time,
     },
     /// An EnDat 2.2 frame with the short recovery time at 1 MHz or less.

@@ -1,4 +1,4 @@
-//! What the manufacturer wrote into the memory. Names of the words as in Beckhoff's object list of the AX8000.
+//! Memory words written by the manufacturer. Names of the words as in Beckhoff's object list of the AX8000.
 
 use super::{EncoderConfig, ErrorSource};
 use crate::US;

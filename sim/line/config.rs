@@ -1,4 +1,4 @@
-//! What a cable and its transceivers do to edges.
+//! Effects of a cable and its transceivers on edges.
 
 use crate::{rng::Rng, Time, NS};
 
@@ -8,7 +8,7 @@ pub enum Jitter {
     /// None.
     #[default]
     None,
-    /// Anything up to this much earlier or later, equally likely.
+    /// Uniform, up to this much earlier or later.
     Uniform(Time),
     /// Normal with this deviation, cut off at the peak.
     Normal {
@@ -34,15 +34,15 @@ impl Jitter {
 pub struct PathConfig {
     /// Delay of both transceivers, without the cable.
     pub transceivers: Time,
-    /// How much later falling edges arrive than rising ones (duty distortion); negative = earlier.
+    /// Additional delay of falling edges over rising ones (duty distortion); negative = earlier.
     pub fall_later: i64,
-    /// How much the delay grows with time (temperature), in picoseconds per microsecond; negative = shrinks.
+    /// Drift of the delay (temperature), in picoseconds per microsecond; negative = shrinks.
     pub drift: i64,
-    /// From a moment on the delay is longer by so much; negative = shorter.
+    /// From this time on the delay is longer by this amount; negative = shorter.
     pub step: Option<(Time, i64)>,
     /// Variation from edge to edge.
     pub jitter: Jitter,
-    /// Pulses shorter than this do not get through.
+    /// Shorter pulses are suppressed.
     pub shortest_pulse: Time,
 }
 
@@ -59,7 +59,7 @@ impl Default for PathConfig {
     }
 }
 
-/// A wire at the end where it is listened to.
+/// A wire at its receiving end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
     /// CLOCK, at the encoder.
@@ -68,38 +68,38 @@ pub enum Wire {
     Data,
 }
 
-/// The level of a wire is inverted for a moment.
+/// The level of a wire is inverted briefly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glitch {
-    /// Which wire.
+    /// Wire.
     pub wire: Wire,
-    /// From when.
+    /// Start.
     pub at: Time,
-    /// For how long.
+    /// Duration.
     pub width: Time,
 }
 
-/// Glitches at random moments (a Poisson process).
+/// Glitches at random times (a Poisson process).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GlitchRate {
-    /// Which wire.
+    /// Wire.
     pub wire: Wire,
     /// Mean time from the end of one to the start of the next.
     pub mean_gap: Time,
-    /// Shortest.
+    /// Shortest glitch.
     pub shortest: Time,
-    /// Longest.
+    /// Longest glitch.
     pub longest: Time,
 }
 
-/// DATA at the receiver's pin keeps a level, whatever is on the cable.
+/// DATA at the receiver's pin keeps a level, for any level on the cable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stuck {
-    /// From when.
+    /// Start.
     pub from: Time,
-    /// Until when.
+    /// End.
     pub until: Time,
-    /// The level.
+    /// Level.
     pub level: bool,
 }
 
@@ -116,23 +116,23 @@ pub struct LineConfig {
     pub data_out: PathConfig,
     /// DATA, from the encoder.
     pub data_in: PathConfig,
-    /// Glitches at given moments, in order of time and not overlapping.
+    /// Glitches at given times, in order and without overlap.
     pub glitches: Vec<Glitch>,
-    /// Glitches at random moments.
+    /// Glitches at random times.
     pub random_glitches: Option<GlitchRate>,
     /// The line is stuck for a while.
     pub stuck: Option<Stuck>,
-    /// What the receiver sends comes back to it after this, over whatever the encoder does.
+    /// Delay of an echo of the receiver's output, which overrides the encoder.
     pub echo_after: Option<Time>,
-    /// Seed of everything random in it.
+    /// Seed of all random values.
     pub seed: u64,
 }
 
-/// Longest delay from clock edge to DATA edge in an encoder that a receiver allows for, and what is on top of it.
+/// Longest delay from clock edge to DATA edge in an encoder that a receiver must support, with margin.
 const ENCODER_DELAY_MAX: Time = 200 * NS;
 
 impl LineConfig {
-    /// A sound cable of `cable_m` metres with ordinary transceivers.
+    /// A good cable of `cable_m` metres with standard transceivers.
     pub fn cable(cable_m: f64) -> Self {
         Self {
             cable_m,
@@ -167,12 +167,12 @@ impl LineConfig {
         (self.cable_m * self.ns_per_m * NS as f64).round() as Time
     }
 
-    /// The longest delay tD that a receiver must take for possible behind this line, in nanoseconds.
+    /// The longest delay tD that a receiver must support with this line, in nanoseconds.
     pub fn delay_most_ns(&self) -> u64 {
         (self.round_trip() + ENCODER_DELAY_MAX).div_ceil(NS)
     }
 
-    /// CLOCK edge at the receiver's pin to the DATA edge it causes, there, without the encoder's own delay (part of tD).
+    /// Time from a CLOCK edge at the receiver's pin to the resulting DATA edge there, without the encoder's delay (part of tD).
     pub fn round_trip(&self) -> Time {
         2 * self.flight() + self.clock.transceivers + self.data_in.transceivers
     }

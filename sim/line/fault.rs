@@ -1,4 +1,4 @@
-//! What can happen to the DATA pair for a while.
+//! Temporary faults of the DATA pair.
 
 use crate::{encoder::Drive, rng::Rng, Time, NS};
 
@@ -9,11 +9,11 @@ pub enum FaultKind {
     StuckLow,
     /// Both ends read HIGH.
     StuckHigh,
-    /// Cut: each end hears its own driver, or its fail-safe bias, which is HIGH.
+    /// Cut: each end receives its own driver, or its fail-safe bias, which is HIGH.
     Open,
-    /// The wires of the pair touch: no voltage between them, which fail-safe receivers read as HIGH, the own driver or not.
+    /// The wires of the pair touch: without a voltage between them, fail-safe receivers read HIGH, even with the driver on.
     Short,
-    /// The wires of the pair are exchanged: everything arrives inverted.
+    /// The wires of the pair are swapped: all levels arrive inverted.
     Swapped,
     /// DATA has the level of CLOCK.
     ToClock,
@@ -23,12 +23,12 @@ pub enum FaultKind {
     Glitches,
     /// The plug is off: the encoder has no supply, and the receiver reads its bias, HIGH.
     PlugHigh,
-    /// The same with a bias that is LOW.
+    /// The plug is off, with a LOW bias.
     PlugLow,
 }
 
 impl FaultKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 10] = [
         Self::StuckLow,
         Self::StuckHigh,
@@ -42,7 +42,7 @@ impl FaultKind {
         Self::PlugLow,
     ];
 
-    /// Its name in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::StuckLow => "stuck_low",
@@ -58,15 +58,15 @@ impl FaultKind {
         }
     }
 
-    /// Whether the encoder is off as well.
+    /// True if the encoder is off as well.
     pub fn is_plug(self) -> bool {
         matches!(self, Self::PlugHigh | Self::PlugLow)
     }
 
-    /// Mean times between changes of level, and shortest and longest ones, of what is random.
+    /// Mean, shortest and longest time between level changes of random faults.
     fn pulses(self) -> Option<(Time, Time, Time)> {
         match self {
-            // A level holds for a part of a bit, whatever the rate.
+            // A level holds for part of a bit, at any rate.
             Self::Noise => Some((100 * NS, 20 * NS, 400 * NS)),
             Self::Glitches => Some((800 * NS, 40 * NS, 200 * NS)),
             _ => None,
@@ -74,7 +74,7 @@ impl FaultKind {
     }
 }
 
-/// A fault that begins and ends.
+/// A temporary fault.
 #[derive(Clone, Debug)]
 pub struct LineFault {
     kind: FaultKind,
@@ -82,13 +82,13 @@ pub struct LineFault {
     until: Time,
     rng: Rng,
     is_on: bool,
-    /// The random pulse going on, and when it changes.
+    /// State of the random pulse, and the time of its next change.
     is_pulse: bool,
     toggle: Time,
 }
 
 impl LineFault {
-    /// From one moment to another.
+    /// A fault from `from` to `until`.
     pub fn new(kind: FaultKind, from: Time, until: Time, seed: u64) -> Self {
         Self {
             kind,
@@ -101,7 +101,7 @@ impl LineFault {
         }
     }
 
-    /// When something changes by itself.
+    /// Time of its next change.
     pub(super) fn next_event(&self) -> Time {
         match self.is_on {
             true => self.until.min(self.toggle),
@@ -109,7 +109,7 @@ impl LineFault {
         }
     }
 
-    /// Lets it begin, end or change. Whether something has changed, and whether it is over.
+    /// Starts, ends or changes it. Returns whether something changed, and whether it is over.
     pub(super) fn advance(&mut self, time: Time) -> (bool, bool) {
         if self.next_event() > time {
             return (false, false);
@@ -137,7 +137,7 @@ impl LineFault {
         self.toggle = now + wait;
     }
 
-    /// DATA at the receiver's pin: `remote` is what arrives, `own` what the receiver drives, `clock` the level of CLOCK there.
+    /// DATA at the receiver's pin: `level` is the arriving level, `own` the receiver's drive, `clock` the level of CLOCK there.
     pub(super) fn at_receiver(&self, level: bool, own: Drive, clock: bool) -> bool {
         if !self.is_on {
             return level;
@@ -160,7 +160,7 @@ impl LineFault {
         }
     }
 
-    /// What the encoder hears of the receiver's driver; `clock` is the level of CLOCK there.
+    /// The receiver's drive as it arrives at the encoder; `clock` is the level of CLOCK there.
     pub(super) fn at_encoder(&self, drive: Drive, clock: bool) -> Drive {
         if !self.is_on {
             return drive;

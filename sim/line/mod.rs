@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! receiver pin --transceiver--cable--transceiver-- encoder pin       CLOCK
-//! receiver pin --transceiver--cable--transceiver-- encoder pin       DATA: each end hears the other after the path's delay
+//! receiver pin --transceiver--cable--transceiver-- encoder pin       DATA: each end receives the other after the path's delay
 //! ```
 //!
-//! A DATA pair that nobody drives reads HIGH (fail-safe transceivers). A driver's effect at its own end is immediate; the
-//! times of an end are those of its pins.
+//! An undriven DATA pair reads HIGH (fail-safe transceivers). A driver acts at its own end at once; times
+//! of an end refer to its pins.
 
 mod config;
 mod fault;
@@ -27,7 +27,7 @@ use crate::{
 use path::Path;
 use std::collections::VecDeque;
 
-/// The line. Time must not run backwards from call to call.
+/// The line. Calls must be in order of time.
 #[derive(Clone)]
 pub struct Line {
     config: LineConfig,
@@ -35,16 +35,16 @@ pub struct Line {
     data_out: Path<Drive>,
     data_in: Path<Output>,
     echo: Option<Path<Drive>>,
-    /// Yet to come, or under way.
+    /// Future or present stuck level.
     stuck: Option<Stuck>,
     is_stuck: bool,
     fault: Option<LineFault>,
-    /// CLOCK as the receiver drives it.
+    /// CLOCK as driven by the receiver.
     clock_sent: bool,
     receiver: Drive,
     encoder: Output,
     glitches: VecDeque<Glitch>,
-    /// The glitch going on, and when it ends.
+    /// The present glitch, and its end.
     glitch: Option<(Wire, Time)>,
     rng: Rng,
     history: VecDeque<DataChange>,
@@ -53,7 +53,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// A line with CLOCK HIGH, the receiver's driver off and the encoder doing `encoder`.
+    /// A line with CLOCK HIGH, the receiver's driver off and the encoder driving `encoder`.
     pub fn new(config: LineConfig, encoder: Output) -> Self {
         let mut rng = Rng::new(config.seed);
         let flight = config.flight();
@@ -87,31 +87,31 @@ impl Line {
         line
     }
 
-    /// Its configuration.
+    /// Configuration.
     pub fn config(&self) -> &LineConfig {
         &self.config
     }
 
-    /// A fault that is to come; it takes the place of one before.
+    /// Sets a future fault, replacing the previous one.
     pub fn set_fault(&mut self, fault: LineFault) {
         self.fault = Some(fault);
     }
 
-    /// Faults and random glitches are gone.
+    /// Removes faults and random glitches.
     pub fn heal(&mut self, time: Time) {
         self.fault = None;
         self.set_random_glitches(time, None);
         self.changed(time);
     }
 
-    /// From now on glitches come so.
+    /// From now on glitches occur at this rate.
     pub fn set_random_glitches(&mut self, time: Time, rate: Option<GlitchRate>) {
         self.config.random_glitches = rate;
         self.glitches.clear();
         self.plan_glitch(time);
     }
 
-    /// From now on edges of all three paths vary so.
+    /// From now on the edges of all three paths have this jitter.
     pub fn set_jitter(&mut self, jitter: Jitter, seed: u64) {
         let mut rng = Rng::new(seed);
         self.clock.set_jitter(jitter, rng.next_u64());
@@ -128,7 +128,7 @@ impl Line {
         }
     }
 
-    /// The receiver does this to DATA.
+    /// The receiver drives DATA.
     pub fn set_receiver(&mut self, time: Time, drive: Drive) {
         if drive != self.receiver {
             self.receiver = drive;
@@ -140,7 +140,7 @@ impl Line {
         }
     }
 
-    /// The encoder does this to DATA.
+    /// The encoder drives DATA.
     pub fn set_encoder(&mut self, time: Time, output: Output) {
         if output != self.encoder {
             self.encoder = output;
@@ -149,7 +149,7 @@ impl Line {
         }
     }
 
-    /// When something arrives next; [`Time::MAX`] if nothing is underway.
+    /// Time of the next arrival; [`Time::MAX`] if there is none.
     pub fn next_event(&self) -> Time {
         let glitch = match self.glitch {
             Some((_, end)) => end,
@@ -166,7 +166,7 @@ impl Line {
         edges.min(echo).min(stuck).min(fault)
     }
 
-    /// Lets one thing arrive that is due at `time`.
+    /// Processes one arrival that is due at `time`.
     pub fn advance(&mut self, time: Time) -> Option<Arrival> {
         if self.data_out.arrive(time).is_some() {
             self.changed(time);
@@ -206,24 +206,24 @@ impl Line {
         self.clock.arrived() ^ self.in_glitch(Wire::Clock)
     }
 
-    /// What the receiver does to DATA, as heard at the encoder.
+    /// The receiver's drive on DATA, as it arrives at the encoder.
     pub fn receiver_at_encoder(&self) -> Drive {
         let drive = self.data_out.arrived();
         let faulty = |f: &LineFault| f.at_encoder(drive, self.clock_at_encoder());
         self.fault.as_ref().map_or(drive, faulty)
     }
 
-    /// What the encoder does to DATA, as heard at the receiver.
+    /// The encoder's drive on DATA, as it arrives at the receiver.
     pub fn encoder_at_receiver(&self) -> Output {
         self.data_in.arrived()
     }
 
-    /// What the receiver does to DATA.
+    /// The receiver's drive on DATA.
     pub fn receiver(&self) -> Drive {
         self.receiver
     }
 
-    /// What the encoder does to DATA.
+    /// The encoder's drive on DATA.
     pub fn encoder(&self) -> Output {
         self.encoder
     }
@@ -233,7 +233,7 @@ impl Line {
         self.history.back().is_none_or(|c| c.level)
     }
 
-    /// Who determines DATA at the receiver's pin.
+    /// Driver of DATA at the receiver's pin.
     pub fn who_at_receiver(&self) -> Who {
         let remote = self.data_in.arrived();
         match (self.receiver, remote.drive) {
@@ -252,12 +252,12 @@ impl Line {
         }
     }
 
-    /// Notes only so many conflicts, the last ones.
+    /// Keeps only the last `most` conflicts.
     pub fn keep(&mut self, most: usize) {
         self.conflicts.keep(most);
     }
 
-    /// The conflicts so far, the unfinished ones as if they ended at `now`.
+    /// The conflicts so far; unfinished ones end at `now`.
     pub fn conflicts(&self, now: Time) -> Vec<Conflict> {
         let ended = |c: &Conflict| Conflict {
             length: now - c.from,
@@ -268,7 +268,7 @@ impl Line {
         all.filter(|c| c.length > 0).collect()
     }
 
-    /// DATA at the receiver's pin at a moment not before the last [`Line::forget_before`].
+    /// DATA at the receiver's pin at a time not before the last [`Line::forget_before`].
     pub fn sample(&self, time: Time) -> Sample {
         let next = self.history.partition_point(|c| c.time <= time);
         let change = self.history[next.saturating_sub(1)];
@@ -282,12 +282,12 @@ impl Line {
         }
     }
 
-    /// The changes of DATA at the receiver's pin that are still remembered.
+    /// The recorded changes of DATA at the receiver's pin.
     pub fn history(&self) -> impl Iterator<Item = &DataChange> {
         self.history.iter()
     }
 
-    /// Forgets what was on DATA before `time`, so that long runs do not fill the memory.
+    /// Drops the history of DATA before `time`, to limit memory in long runs.
     pub fn forget_before(&mut self, time: Time) {
         while self.history.len() > 1 && self.history[1].time <= time {
             self.history.pop_front();
@@ -313,7 +313,7 @@ impl Line {
         }
     }
 
-    /// The level that overrides what is driven on the pair.
+    /// The level that overrides the drivers of the pair.
     fn overriding(&self) -> Option<bool> {
         if self.is_stuck {
             return self.stuck.map(|s| s.level);

@@ -1,10 +1,10 @@
-//! Edges on their way from one end of a path to the other.
+//! Edges in transit from one end of a path to the other.
 
 use super::PathConfig;
 use crate::{encoder::Drive, rng::Rng, Time, US};
 use std::collections::VecDeque;
 
-/// Something whose change to LOW can be told from its change to HIGH.
+/// A value with a distinction between changes to LOW and to HIGH.
 pub(super) trait Edge: Copy + PartialEq {
     fn falls(self) -> bool;
 }
@@ -27,14 +27,14 @@ impl Edge for crate::encoder::Output {
     }
 }
 
-/// A delay line. Edges keep their order; pulses too short for it vanish.
+/// A delay line. Edges keep their order; pulses that are too short vanish.
 #[derive(Clone)]
 pub(super) struct Path<T> {
     config: PathConfig,
     flight: Time,
     rng: Rng,
     underway: VecDeque<(Time, T)>,
-    /// When the first of them arrives.
+    /// Time of the first arrival.
     next: Time,
     arrived: T,
 }
@@ -51,7 +51,7 @@ impl<T: Edge> Path<T> {
         }
     }
 
-    /// From now on edges vary so.
+    /// From now on edges have this jitter.
     pub(super) fn set_jitter(&mut self, jitter: super::Jitter, seed: u64) {
         self.config.jitter = jitter;
         self.rng = Rng::new(seed);
@@ -81,12 +81,12 @@ impl<T: Edge> Path<T> {
         self.next = self.underway.front().map_or(Time::MAX, |p| p.0);
     }
 
-    /// When the next change arrives; [`Time::MAX`] if none is underway.
+    /// Time of the next arrival; [`Time::MAX`] if there is none.
     pub(super) fn next(&self) -> Time {
         self.next
     }
 
-    /// Takes over a change that has arrived by `time`.
+    /// Applies a change that has arrived by `time`.
     pub(super) fn arrive(&mut self, time: Time) -> Option<T> {
         if self.next > time {
             return None;
@@ -96,7 +96,7 @@ impl<T: Edge> Path<T> {
         Some(self.arrived)
     }
 
-    /// What there is at the far end.
+    /// The value at the far end.
     pub(super) fn arrived(&self) -> T {
         self.arrived
     }

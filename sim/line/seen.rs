@@ -1,4 +1,4 @@
-//! What is seen on a line: who drives it, changes, samples, conflicts.
+//! Observations of a line: driver, changes, samples, conflicts.
 
 use crate::encoder::Symbol;
 use crate::Time;
@@ -12,18 +12,18 @@ pub enum End {
     Encoder,
 }
 
-/// Both drivers were heard at one end at the same time.
+/// Both drivers were received at one end at the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Conflict {
-    /// At which end.
+    /// End of the line.
     pub end: End,
-    /// Since when.
+    /// Start.
     pub from: Time,
-    /// For how long.
+    /// Duration.
     pub length: Time,
-    /// They wanted different levels.
+    /// They drove different levels.
     pub opposing: bool,
-    /// Both drivers were on at once. If not, the other end had already let go and its last edge was still in the cable.
+    /// Both drivers were on at once. Otherwise the other driver was already off, and its last edge was still in the cable.
     pub both_on: bool,
 }
 
@@ -51,14 +51,14 @@ impl std::fmt::Display for Conflict {
     }
 }
 
-/// Who determines DATA at the receiver's pin.
+/// Driver of DATA at the receiver's pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Who {
-    /// Nobody: it floats, and reads HIGH.
+    /// None: it floats, and reads HIGH.
     Nobody,
     /// The receiver itself.
     Receiver,
-    /// The encoder, meaning this.
+    /// The encoder, with the meaning of its output.
     Encoder(Symbol),
     /// Both.
     Both,
@@ -67,35 +67,35 @@ pub enum Who {
 /// A change of DATA at the receiver's pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DataChange {
-    /// When.
+    /// Time.
     pub time: Time,
     /// Level from then on.
     pub level: bool,
-    /// Who makes it.
+    /// Driver.
     pub who: Who,
-    /// Whether it is a glitch.
+    /// True for a glitch.
     pub glitch: bool,
 }
 
-/// DATA at the receiver's pin at one moment.
+/// DATA at the receiver's pin at one time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// The moment.
+    /// Time.
     pub time: Time,
-    /// Its level.
+    /// Level.
     pub level: bool,
-    /// Who makes it.
+    /// Driver.
     pub who: Who,
-    /// Whether it is a glitch.
+    /// True for a glitch.
     pub glitch: bool,
-    /// How long it has been so.
+    /// Time since the last change.
     pub since: Time,
-    /// How long it will be so; none = no change known yet.
+    /// Time until the next change; `None` = not known yet.
     pub until: Option<Time>,
 }
 
 impl Sample {
-    /// The number of the answer bit that is on the line (0 = start bit), if it is one.
+    /// The number of the answer bit on the line (0 = start bit), if any.
     pub fn answer_bit(&self) -> Option<u8> {
         match self.who {
             Who::Encoder(Symbol::Bit(i)) => Some(i),
@@ -103,12 +103,12 @@ impl Sample {
         }
     }
 
-    /// Driven by the encoder alone, whether a glitch disturbs it or not.
+    /// Driven by the encoder alone, with or without a glitch.
     pub fn is_encoders(&self) -> bool {
         matches!(self.who, Who::Encoder(s) if s != Symbol::Absent)
     }
 
-    /// Driven by the encoder alone, undisturbed, and not changing within `guard` before or after.
+    /// Driven by the encoder alone, without a glitch, and stable for `guard` before and after.
     pub fn is_defined(&self, guard: Time) -> bool {
         self.is_encoders()
             && !self.glitch
@@ -117,7 +117,7 @@ impl Sample {
     }
 }
 
-/// What has arrived at an end.
+/// An arrival at an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
     /// CLOCK at the encoder has this level now.

@@ -11,7 +11,7 @@ const OFF: Output = Output {
     symbol: Symbol::Listening,
 };
 
-/// Lets everything arrive up to `until` and notes the clock at the encoder.
+/// Processes all arrivals up to `until` and records the clock at the encoder.
 fn run(line: &mut Line, until: Time) -> Vec<(Time, bool)> {
     let mut clock = Vec::new();
     while line.next_event() <= until {

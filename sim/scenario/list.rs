@@ -10,7 +10,7 @@ use crate::{
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand::{self, SendPosition, SendPositionAddInfo};
 
-/// Abort time of the stories in which frames are given up: long enough for the encoder's own time-out, short enough to be simulated.
+/// Abort time of scenarios with aborted frames: long enough for the encoder's time-out, short enough for simulation.
 const SHORT_ABORT_US: u64 = 200;
 
 /// A good frame, for the lists of causes.
@@ -42,7 +42,7 @@ pub fn all() -> Vec<Scenario> {
     ]
 }
 
-/// A channel with the settings that fit its encoder.
+/// A channel with suitable settings for its encoder.
 fn channel(
     rates: (u64, u64),
     command: ModeCommand,
@@ -87,10 +87,10 @@ fn paper() -> Scenario {
     }
 }
 
-/// A position whose CRC, behind F1 F2 = 01, is 0x1D: that of the frame that the paper shows.
+/// A position whose CRC, after F1 F2 = 01, is 0x1D: that of the frame in the paper.
 const POSITION_WITH_CRC_1D: u64 = 0x0ABC_DE06;
 
-/// Liu et al., figure 4: wait for the trigger, clock and command, start bit, error bits, position, CRC; each way out of it.
+/// Liu et al., figure 4: wait for the trigger, clock and command, start bit, error bits, position, CRC; with every exit.
 fn paper_flow() -> Scenario {
     let bits = |f1, f2| Defect::ErrorBits { f1, f2 };
     let encoder = EncoderConfig::endat22(29)
@@ -208,7 +208,7 @@ fn sixteen_megahertz() -> Scenario {
     }
 }
 
-/// One RCN 8510 at 3.125 MHz, for the stories in which something goes wrong.
+/// One RCN 8510 at 3.125 MHz, for scenarios with faults.
 fn one_rcn8510(encoder: EncoderConfig) -> Scenario {
     let rates = (100_000_000, 3_125_000);
     let mut channel = channel(rates, SendPositionAddInfo, encoder, 10.0);
@@ -268,7 +268,7 @@ fn alarm() -> Scenario {
 }
 
 fn glitches() -> Scenario {
-    /// The filter takes pulses of up to this many system clock cycles away.
+    /// The filter suppresses pulses of up to this many system clock cycles.
     const FILTER_CYCLES: u64 = 3;
     let longest: Time = 25 * NS;
     let mut scenario = Scenario {
@@ -386,7 +386,7 @@ fn no_answer() -> Scenario {
 }
 
 fn initialise() -> Scenario {
-    // Two seconds are long: as few cycles as can be.
+    // Two seconds are long, so use as few cycles as possible.
     let rates = (4_000_000, 500_000);
     Scenario {
         name: "initialise",

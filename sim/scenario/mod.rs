@@ -1,4 +1,4 @@
-//! Named stories: a configuration, encoders, lines and triggers, and what a sound core makes of them. Tests and the program share them.
+//! Named scenarios: a configuration, encoders, lines and triggers, and the expected causes. Tests and the program share them.
 
 mod list;
 mod report;
@@ -22,24 +22,24 @@ use rtl_design::engine::Engine;
 /// One EnDat port of a scenario.
 #[derive(Clone, Debug)]
 pub struct ChannelScenario {
-    /// Configuration of the channel. Some stories need its short `abort_us`, which the core fixes when it is made.
+    /// Configuration of the channel. Some scenarios need its short `abort_us`, which is fixed in the design.
     pub settings: ChannelSettings,
     /// The encoder.
     pub encoder: EncoderConfig,
-    /// The line to it.
+    /// The line to the encoder.
     pub line: LineConfig,
 }
 
-/// A named story.
+/// A named scenario.
 #[derive(Clone, Debug)]
 pub struct Scenario {
-    /// What it is called on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What it shows, in a sentence.
+    /// One-sentence summary.
     pub summary: &'static str,
     /// System clock in hertz.
     pub system_hz: u64,
-    /// EnDat clock in hertz, as asked for.
+    /// Requested EnDat clock in hertz.
     pub endat_hz: u64,
     /// The ports.
     pub channels: Vec<ChannelScenario>,
@@ -49,16 +49,16 @@ pub struct Scenario {
     pub triggers: u64,
     /// Requests, in order of the triggers.
     pub requests: &'static [Request],
-    /// The port initialises its encoder, which takes this long; 0 = it does not.
+    /// Duration of the initialisation of the encoder; 0 = none.
     pub initialisation: Time,
-    /// Cause code of every result that a sound core delivers, in order.
+    /// Expected cause codes of all results, in order.
     pub causes: &'static [u64],
-    /// The receiver is not to blame if an encoder sees a frame that stops: the story makes it stop.
+    /// The scenario makes a frame stop, so this is not a violation by the receiver.
     pub may_stop: bool,
 }
 
-/// A request: with an EnDat 2.2 command it rides on the frame of its trigger, with any other it has a frame of its own in that
-/// trigger's place.
+/// A request. EnDat 2.2 commands are attached to the frame of their trigger; other commands have a separate frame instead of that
+/// trigger's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request {
     /// Number of the trigger, 0 = first.
@@ -71,23 +71,23 @@ pub struct Request {
     pub data: u16,
 }
 
-/// When the first trigger comes.
+/// Time of the first trigger.
 const FIRST_TRIGGER: Time = 20 * US;
-/// Longest frame of a request: time-out and pause included.
+/// Longest frame of a request, including time-out and pause.
 const REQUEST_LIMIT: Time = 100 * MS;
-/// From the first trigger to the others: the frame that measures the delay takes less.
+/// Time from the first trigger to the others: more than the frame that measures the delay.
 const WARM_UP: Time = 600 * US;
 
-/// How a scenario is run.
+/// Options of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RunOptions {
-    /// Keep everything for waveforms and drawings.
+    /// Record everything for waveforms and drawings.
     pub record: bool,
-    /// From the pin to the register that takes the sample, in system clock cycles.
+    /// Latency from the pin to the sampling register, in system clock cycles.
     pub sample_latency_cycles: u64,
 }
 
-/// Ports of the block `Channel` that are worth a place in a waveform.
+/// Ports of the block `Channel` that a waveform shows.
 pub(crate) const WATCHED: [&str; 9] = [
     "trigger",
     "trigger_i",
@@ -119,7 +119,7 @@ impl Scenario {
         (bench, report)
     }
 
-    /// Runs the whole scenario on a card, which has its configuration already.
+    /// Runs the whole scenario on a configured card.
     pub fn run_card<E: Engine>(&self, engine: E, options: RunOptions) -> (Bench<E>, Report) {
         let all: Vec<usize> = (0..self.channels.len()).collect();
         let links = all.iter().map(|i| (PinNames::card(*i), self.link(*i)));
@@ -130,7 +130,7 @@ impl Scenario {
         (bench, report)
     }
 
-    /// What the channel must be able to do.
+    /// Required features of the channel.
     pub fn features(&self) -> Features {
         Features {
             requests: !self.requests.is_empty(),
@@ -144,14 +144,14 @@ impl Scenario {
         Link::new(channel.line.clone(), channel.encoder.clone())
     }
 
-    /// When the triggers come.
+    /// Times of the triggers.
     pub fn trigger_times(&self) -> impl Iterator<Item = Time> + '_ {
         let first = self.initialisation + FIRST_TRIGGER;
         let later = (0..self.triggers).map(move |i| first + WARM_UP + i * self.trigger_period);
         std::iter::once(first).chain(later)
     }
 
-    /// What came back to the requests that had a frame of their own.
+    /// Runs the triggers and requests; returns the answers to separate request frames.
     fn run<E: Engine>(&self, bench: &mut Bench<E>, options: RunOptions) -> Vec<Answer> {
         bench.set_sample_latency(options.sample_latency_cycles);
         if options.record {
@@ -203,5 +203,5 @@ impl Request {
     }
 }
 
-/// After the last trigger: longer than any frame at the full clock with its recovery time.
+/// After the last trigger: more than any frame at the full clock with its recovery time.
 const SETTLE: Time = 100 * US;

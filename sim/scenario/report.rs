@@ -1,4 +1,4 @@
-//! What happened in a scenario, frame by frame, and what was wrong with it.
+//! Report of a scenario, frame by frame, with the faults.
 
 use super::{Request, Scenario};
 use crate::{
@@ -11,10 +11,10 @@ use endat_hdl::endat::{timing, transaction::cause};
 use rtl_design::engine::Engine;
 use std::fmt;
 
-/// What came back to a request with a frame of its own.
+/// Answer to a separate request frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// When.
+    /// Time.
     pub time: Time,
     /// The six bits of the request.
     pub command: u8,
@@ -22,7 +22,7 @@ pub struct Answer {
     pub cause: u64,
     /// The answer: 8 and 16 bits, or a position or test values.
     pub word: u64,
-    /// Its CRC is right.
+    /// The CRC is right.
     pub crc_good: bool,
 }
 
@@ -38,50 +38,50 @@ impl Answer {
     }
 }
 
-/// One frame, or a trigger that led to none.
+/// One frame, or a trigger without one.
 #[derive(Clone, Debug)]
 pub struct FrameReport {
     /// The trigger's time.
     pub trigger: Option<Time>,
-    /// What the core delivered (block `Channel` only).
+    /// Result of the core (block `Channel` only).
     pub result: Option<ChannelResult>,
-    /// What the core delivered for a request with a frame of its own.
+    /// Answer of the core to a separate request frame.
     pub answer: Option<Answer>,
-    /// What the encoder saw.
+    /// Frame, as seen by the encoder.
     pub frame: Option<FrameLog>,
 }
 
-/// The samples that the core took.
+/// The samples of the core.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleSummary {
-    /// How many.
+    /// Number of samples.
     pub count: usize,
-    /// How many where DATA was not driven by the encoder alone.
+    /// Number of samples while DATA was not driven by the encoder alone.
     pub undefined: usize,
-    /// Smallest distance of an undisturbed one from a change of DATA.
+    /// Smallest distance of an undisturbed sample from a change of DATA.
     pub narrowest: Time,
 }
 
 /// One port.
 #[derive(Clone, Debug)]
 pub struct ChannelReport {
-    /// Its number in the scenario.
+    /// Number in the scenario.
     pub index: usize,
-    /// Its frames in order of time.
+    /// Frames in order of time.
     pub frames: Vec<FrameReport>,
-    /// What the encoder complained about.
+    /// Violations noted by the encoder.
     pub violations: Vec<(Time, Violation)>,
-    /// Moments when DATA was driven from both ends.
+    /// Times when both ends drove DATA.
     pub conflicts: Vec<Conflict>,
-    /// The samples, if the core shows them.
+    /// The samples, if the core has the outputs for them.
     pub samples: SampleSummary,
 }
 
-/// What happened.
+/// Report of a run.
 #[derive(Clone, Debug)]
 pub struct Report {
     scenario: Scenario,
-    /// The ports that were run.
+    /// Reports of the ports.
     pub channels: Vec<ChannelReport>,
     has_results: bool,
 }
@@ -119,7 +119,7 @@ impl Report {
         }
     }
 
-    /// Everything that a sound core would not have done; empty if all is well.
+    /// All faults; empty for a good run.
     pub fn complaints(&self) -> Vec<String> {
         let mut out = Vec::new();
         for c in &self.channels {
@@ -175,7 +175,7 @@ impl Report {
     }
 }
 
-/// What the encoder answered to a request with a frame of its own.
+/// The encoder's answer to a separate request frame.
 fn answered(frame: &FrameLog) -> Option<u64> {
     match frame.kind {
         AnswerKind::Parameter => frame.reply.map(|r| r.word().into()),
@@ -184,7 +184,7 @@ fn answered(frame: &FrameLog) -> Option<u64> {
     }
 }
 
-/// A frame stops; its last LOW may be cut short by that.
+/// True for a frame that stops; this may shorten its last LOW.
 fn is_stop(v: &Violation, c: &ChannelReport) -> bool {
     let is_last = |edge: u32| {
         let mut frames = c.frames.iter().filter_map(|f| f.frame.as_ref());
@@ -231,8 +231,8 @@ fn complain_about_frame(number: usize, f: &FrameReport, say: &mut impl FnMut(Str
     }
 }
 
-/// Each result with the last frame that began since the result before; frames without a result, for requests and of the
-/// initialisation, in their places.
+/// Each result with the last frame that began since the previous result. Frames without a result, for requests and for the
+/// initialisation, are in their places.
 fn by_result(
     scenario: &Scenario,
     results: &[ChannelResult],
@@ -347,7 +347,7 @@ impl fmt::Display for Report {
 /// Narrowest column of results.
 const RESULT_MIN: usize = 27;
 
-/// The verdict of the core in words.
+/// The verdict of the core as text.
 fn result(r: &FrameReport) -> String {
     let words = |r: &ChannelResult| match (r.last_cause(), r.fresh, r.position_valid) {
         (0, true, _) => "good".into(),

@@ -1,4 +1,4 @@
-//! The story of a T-format encoder: exchanges of triggers and of the host, one of them spoilt.
+//! A T-format scenario: exchanges of triggers and of the host, one of them corrupted.
 
 use crate::{
     bench::{Bench, ChannelResult, PinNames, TFormatLink},
@@ -14,19 +14,19 @@ use endat_hdl::regs::Protocol;
 use rtl_design::engine::Engine;
 use std::fmt;
 
-/// What it is called on the command line.
+/// Name on the command line.
 pub const NAME: &str = "t-format";
-/// What it shows.
+/// Summary.
 pub const SUMMARY: &str =
     "a T-format encoder at 2.5 Mbit/s: positions, kind, a wrong check sum, a byte of the EEPROM written and read";
 /// System clock in hertz.
 pub const SYSTEM_HZ: u64 = 40_000_000;
 
-/// An exchange, and what a sound core makes of it.
+/// An exchange, and its expected cause.
 struct Exchange {
     request: Request,
     defect: Defect,
-    /// Address and data of a request of the host.
+    /// Address and data of a host request.
     memory: (u8, u8),
     cause: u64,
 }
@@ -40,7 +40,7 @@ const fn asked(request: Request) -> Exchange {
     }
 }
 
-/// The story.
+/// All exchanges.
 const EXCHANGES: [Exchange; 7] = [
     asked(Request::SingleTurn),
     asked(Request::Everything),
@@ -55,36 +55,36 @@ const EXCHANGES: [Exchange; 7] = [
     asked(Request::ReadEeprom),
 ];
 const PERIOD: Time = 200 * US;
-/// From request to answer at the longest.
+/// Timeout from request to answer.
 const PATIENCE: Time = MS;
-/// Cable of some ten metres.
+/// Delay of about ten metres of cable.
 const DELAY: Time = US / 20;
 
-/// What became of an exchange.
+/// Report of an exchange.
 #[derive(Clone, Debug)]
 pub struct ExchangeReport {
-    /// When it was asked for.
+    /// Time of the request.
     pub time: Time,
     /// The request.
     pub request: Request,
-    /// What the encoder heard.
+    /// Bytes received by the encoder.
     pub sent: Vec<u8>,
-    /// What the encoder answered, before it was spoilt.
+    /// The encoder's reply before corruption.
     pub reply: Vec<u8>,
     /// The result of a trigger.
     pub result: Option<ChannelResult>,
-    /// The answer word of a request of the host.
+    /// The answer word of a host request.
     pub answer: Option<u64>,
 }
 
 impl ExchangeReport {
-    /// Code of the cause; none if nothing came.
+    /// Code of the cause; `None` without an answer.
     pub fn cause(&self) -> Option<u64> {
         let answer = self.answer.map(|word| word >> 12 & 15);
         self.result.as_ref().map(|r| r.last_cause()).or(answer)
     }
 
-    /// Its name.
+    /// Name of the cause.
     pub fn cause_name(&self) -> &'static str {
         match self.cause() {
             None => "no answer",
@@ -97,16 +97,16 @@ impl ExchangeReport {
     }
 }
 
-/// What happened, and what was wrong with it.
+/// Report of the scenario, with the faults.
 #[derive(Clone, Debug)]
 pub struct TFormatReport {
     /// All exchanges.
     pub exchanges: Vec<ExchangeReport>,
-    /// Everything that a sound core would not have done.
+    /// All faults; empty for a good run.
     pub complaints: Vec<String>,
 }
 
-/// Runs the story on a block `EncoderPort` for T-format, with its link recorded.
+/// Runs the scenario on a block `EncoderPort` for T-format, with its link recorded.
 pub fn run<E: Engine>(engine: E) -> (Bench<E>, TFormatReport) {
     let mut bench = Bench::new(engine, SYSTEM_HZ, vec![]);
     let config = EncoderConfig {
@@ -196,7 +196,7 @@ fn one<E: Engine>(bench: &mut Bench<E>, exchange: &Exchange) -> ExchangeReport {
     }
 }
 
-/// Bytes as people write them.
+/// Bytes as hexadecimal text.
 fn hex(bytes: &[u8]) -> String {
     let bytes = bytes.iter().map(|b| format!("{b:02X}"));
     bytes.collect::<Vec<_>>().join(" ")

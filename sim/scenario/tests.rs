@@ -10,7 +10,7 @@ fn run(scenario: &Scenario, index: usize, bug: Bug) -> Report {
     scenario.run_channel(index, receiver, options).1
 }
 
-/// It takes no requests, and initialises nothing.
+/// The reference receiver takes no requests, and initialises nothing.
 fn all_for_the_plain_receiver() -> impl Iterator<Item = Scenario> {
     let plain = |s: &Scenario| s.requests.is_empty() && s.initialisation == 0;
     all().into_iter().filter(plain)
@@ -19,7 +19,7 @@ fn all_for_the_plain_receiver() -> impl Iterator<Item = Scenario> {
 #[test]
 fn every_scenario_goes_as_it_says() {
     for s in all_for_the_plain_receiver() {
-        // The plain receiver has no input filter, and no window for the start bit.
+        // The reference receiver has no input filter, and no window for the start bit.
         if ["glitches", "paper-flow"].contains(&s.name) {
             continue;
         }
@@ -52,7 +52,7 @@ fn a_wrong_receiver_is_complained_about() {
     ] {
         let report = run(&paper, 0, bug);
         let noticed = !report.complaints().is_empty();
-        // Without waiting for the recovery time nothing happens as long as triggers are slow.
+        // Ignoring the recovery time has no effect while triggers are slow.
         assert_eq!(noticed, bug != Bug::NoRecovery, "{bug:?} {report}");
     }
     let fast = named("overrun").unwrap();

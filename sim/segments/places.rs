@@ -1,4 +1,4 @@
-//! Where in its frame a moment is, and what the receiver means there.
+//! Position of a time in its frame, and the meaning of the receiver's output there.
 
 use super::Meaning;
 use crate::{
@@ -7,18 +7,18 @@ use crate::{
     Time,
 };
 
-/// A moment in its frame.
+/// A time in its frame.
 pub(super) struct Place<'a> {
     /// Falling clock edges so far.
     falls: u32,
     frame: Option<&'a FrameLog>,
 }
 
-/// Tells where moments in ascending order are in their frames.
+/// Returns positions in frames for times in ascending order.
 pub(super) struct Places<'a> {
     clock: FallCounter<'a>,
     frames: &'a [FrameLog],
-    /// How much later the encoder, whose frames these are, sees CLOCK.
+    /// Delay of CLOCK to the encoder, whose frames these are.
     flight: Time,
 }
 
@@ -40,7 +40,7 @@ impl<'a> Places<'a> {
 }
 
 impl Place<'_> {
-    /// What the receiver means.
+    /// Meaning of the receiver's output.
     pub(super) fn receiver(&self) -> Meaning {
         match (self.falls, self.frame) {
             (0..=2, _) => Meaning::LeadIn,
@@ -66,7 +66,7 @@ impl Place<'_> {
         })
     }
 
-    /// What it means that nobody drives.
+    /// Meaning of an undriven line.
     pub(super) fn nobody(&self) -> Meaning {
         match self.frame.and_then(pause_fall) {
             Some(fall) if fall == self.falls => Meaning::Pause,
@@ -84,7 +84,7 @@ fn pause_fall(frame: &FrameLog) -> Option<u32> {
         .map(|s| s + frame.answer.len)
 }
 
-/// The frame of a moment at the encoder.
+/// The frame at a time, at the encoder.
 pub(super) fn frame_at(frames: &[FrameLog], time: Time) -> Option<&FrameLog> {
     let next = frames.partition_point(|f| f.first_fall <= time);
     next.checked_sub(1).map(|n| &frames[n])
@@ -100,7 +100,7 @@ pub fn first_falls(clock: &[(Time, bool)]) -> Vec<Time> {
         .collect()
 }
 
-/// Counts the falling clock edges of a frame, for moments in ascending order.
+/// Counts the falling clock edges of a frame, for times in ascending order.
 struct FallCounter<'a> {
     clock: &'a [(Time, bool)],
     next_edge: usize,
@@ -109,7 +109,7 @@ struct FallCounter<'a> {
     falls: u32,
 }
 
-/// A clock that has been HIGH for longer than this, and for longer than it was LOW before, has ended its frame.
+/// A clock that is HIGH for longer than this, and for longer than its previous LOW, has ended its frame.
 const FRAME_GAP: Time = crate::US;
 
 impl<'a> FallCounter<'a> {
@@ -193,7 +193,7 @@ mod tests {
         assert_eq!(meanings(&frame, 66..=74), block);
     }
 
-    /// Without tST the receiver sends its parameter before a far encoder has seen the first edge.
+    /// Without tST the receiver sends its parameter before a distant encoder receives the first edge.
     #[test]
     fn the_receivers_frame_begins_before_the_encoders() {
         let frame = FrameLog {

@@ -1,4 +1,4 @@
-//! What a map can be drawn over, and the conditions of a cell.
+//! Axes of a map, and the conditions of a cell.
 
 use crate::{
     campaign::Case,
@@ -19,13 +19,13 @@ pub enum Quantity {
     Delay,
     /// Peak jitter of every DATA edge at the receiver.
     Jitter,
-    /// How much later DATA falls than it rises.
+    /// Delay of falling DATA edges against rising ones.
     Distortion,
     /// Glitches on DATA at the receiver, of up to `GLITCH_MAX`.
     Noise,
     /// Input filter.
     Filter,
-    /// How far the sample is from the middle of the bit (phase from a register).
+    /// Distance of the sample from the middle of the bit (phase from a register).
     Offset,
 }
 
@@ -37,7 +37,7 @@ const CABLE_MAX_M: f64 = 800.0;
 const FILTER_MAX: f64 = 15.0;
 
 impl Quantity {
-    /// All of them.
+    /// All quantities.
     pub const ALL: [Self; 8] = [
         Self::Cable,
         Self::Clock,
@@ -49,7 +49,7 @@ impl Quantity {
         Self::Offset,
     ];
 
-    /// What it is called on the command line and in tables, unit included.
+    /// Name on the command line and in tables, with the unit.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cable => "cable_m",
@@ -63,7 +63,7 @@ impl Quantity {
         }
     }
 
-    /// What it is called beside an axis.
+    /// Title of an axis.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Cable => "cable in m",
@@ -100,32 +100,32 @@ impl Quantity {
     }
 }
 
-/// Where a receiver takes the phase of its samples from.
+/// Source of a receiver's sampling phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
-    /// One cycle for each frame after its start bit: a channel without alignment.
+    /// One cycle for each frame towards its start bit: a channel without alignment.
     Step,
-    /// The mean over many edges.
+    /// The mean of many edges.
     #[default]
     Tracked,
     /// The start bit of each frame.
     Frame,
-    /// A register, set to the delay of the line as it should be.
+    /// A register, set to the nominal delay of the line.
     Fixed,
 }
 
-/// What receiver is run.
+/// Kind of receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReceiverKind {
-    /// Where its phase comes from.
+    /// Source of its phase.
     pub phase: Phase,
-    /// It looks at DATA on both edges of its clock.
+    /// Samples DATA on both edges of its clock.
     pub double_edge: bool,
     /// Majority of three samples.
     pub majority: bool,
 }
 
-/// Where a cell is.
+/// Conditions of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// System clock in hertz.
@@ -140,7 +140,7 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// A sound line: 8 MHz, or the fastest clock there is, over 10 m.
+    /// A good line: 8 MHz, or the fastest supported clock, over 10 m.
     pub fn new(system_hz: u64, command: ModeCommand, position_bits: u32) -> Self {
         let (_, fastest) = Quantity::Clock.range(system_hz, ReceiverKind::default());
         let mut conditions = Self {
@@ -161,12 +161,12 @@ impl Conditions {
         self.values[quantity as usize] = value;
     }
 
-    /// What it is set to.
+    /// Value of one quantity.
     pub fn get(&self, quantity: Quantity) -> f64 {
         self.values[quantity as usize]
     }
 
-    /// The delay of a line as mode `fixed` has it: where edges are seen on average, in sixteenths of a cycle.
+    /// The delay of a line for mode `fixed`: the mean place of edges, in sixteenths of a cycle.
     fn fixed_delay(&self, delay: Time) -> u64 {
         let places = if self.receiver.double_edge { 2 } else { 1 };
         let majority = u64::from(self.receiver.majority) * 16 / places;
@@ -216,17 +216,17 @@ impl Conditions {
     }
 }
 
-/// One side of a map.
+/// An axis of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What goes along it.
+    /// Quantity.
     pub quantity: Quantity,
-    /// Its values, in order.
+    /// Values, in order.
     pub values: Vec<f64>,
 }
 
 impl Axis {
-    /// Where a value would stand, in steps from the first one: between two values by its distance from them, and half a step outside if it
+    /// Position of a value, in steps from the first one: interpolated between two values, and half a step outside if it
     /// is beyond all of them.
     pub fn place(&self, value: f64) -> f64 {
         let steps = self.values.windows(2).enumerate();

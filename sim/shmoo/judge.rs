@@ -1,4 +1,4 @@
-//! What became of the frames of a channel.
+//! Fate of the frames of a channel.
 
 use crate::{
     bench::ChannelResult,
@@ -9,25 +9,25 @@ use crate::{
 };
 use endat_hdl::endat::transaction::cause;
 
-/// What becomes of a frame; what stands later is worse.
+/// Fate of a frame; later ones are worse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fate {
-    /// The position is the encoder's, and the encoder saw the pulses that it needs.
+    /// The position is the encoder's, and the encoder received exactly its pulses.
     Good,
-    /// Refused for another reason than the following ones, or without a result.
+    /// Rejected for a reason other than the following ones, or without a result.
     Refused,
     /// No start bit, or one outside its window.
     Start,
     /// The CRC is wrong.
     Crc,
-    /// A result, but not the pulses that the encoder needs.
+    /// A result, but not exactly the pulses that the encoder needs.
     Pulses,
-    /// Told as good, but another position than the encoder's.
+    /// Reported as good, but with another position than the encoder's.
     Wrong,
 }
 
 impl Fate {
-    /// All of them.
+    /// All fates.
     pub const ALL: [Self; 6] = [
         Self::Good,
         Self::Refused,
@@ -37,7 +37,7 @@ impl Fate {
         Self::Wrong,
     ];
 
-    /// Its name in tables.
+    /// Name in tables.
     pub const fn column(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -49,7 +49,7 @@ impl Fate {
         }
     }
 
-    /// Its name for people.
+    /// Readable name.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -61,7 +61,7 @@ impl Fate {
         }
     }
 
-    /// Its letter in maps.
+    /// Letter in maps.
     pub const fn letter(self) -> char {
         match self {
             Self::Good => '.',
@@ -74,7 +74,7 @@ impl Fate {
     }
 }
 
-/// Fates of frames, counted, and the smallest margin.
+/// Counts of fates, and the smallest margin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tally {
     counts: [usize; Fate::ALL.len()],
@@ -82,12 +82,12 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// How many frames had this fate.
+    /// Number of frames with this fate.
     pub fn count(&self, fate: Fate) -> usize {
         self.counts[fate as usize]
     }
 
-    /// How many frames there were.
+    /// Number of frames.
     pub fn frames(&self) -> usize {
         self.counts.iter().sum()
     }
@@ -98,12 +98,12 @@ impl Tally {
         worst.copied().unwrap_or(Fate::Refused)
     }
 
-    /// The smallest distance of a sample from a DATA edge, as a part of the bit: 0.5 at most. Of good frames only.
+    /// The smallest distance of a sample from a DATA edge, as a part of the bit: at most 0.5. Good frames only.
     pub fn margin(&self) -> Option<f64> {
         self.margin.filter(|_| self.fate() == Fate::Good)
     }
 
-    /// Adds another one.
+    /// Adds another tally.
     pub fn add(&mut self, other: &Self) {
         for (sum, count) in self.counts.iter_mut().zip(other.counts) {
             *sum += count;
@@ -115,7 +115,7 @@ impl Tally {
     }
 }
 
-/// Counts the frames of a case, but for those that measure the delay: they have a clock of their own.
+/// Counts the frames of a case, except those that measure the delay, which have another clock.
 pub(super) fn judge(case: &Case, traces: &Traces<'_>) -> Tally {
     let mut tally = Tally::default();
     let first = case.calibration_frames();
@@ -125,7 +125,7 @@ pub(super) fn judge(case: &Case, traces: &Traces<'_>) -> Tally {
         let frames = frames.filter(|f| (before..result.time).contains(&f.first_fall));
         tally.counts[fate(result, frames) as usize] += 1;
     }
-    // Results that never came.
+    // Results that did not arrive.
     let missing = case.frames.saturating_sub(traces.results.len().max(first));
     tally.counts[Fate::Refused as usize] += missing;
     let period = (case.settings.period_cycles * 1_000_000 * US) as f64 / case.system_hz as f64;
@@ -140,7 +140,7 @@ pub(super) fn judge(case: &Case, traces: &Traces<'_>) -> Tally {
     tally
 }
 
-/// `frames` are those that the encoder has seen for this result: pulses that it does not need can be a second one.
+/// `frames` are the encoder's frames for this result: additional pulses may form a second one.
 fn fate<'f>(result: &ChannelResult, frames: impl Iterator<Item = &'f FrameLog>) -> Fate {
     match result.last_cause() {
         cause::NONE => {
@@ -157,7 +157,7 @@ fn fate<'f>(result: &ChannelResult, frames: impl Iterator<Item = &'f FrameLog>) 
         }
         cause::CRC => Fate::Crc,
         cause::NO_START_BIT | cause::START_WINDOW => Fate::Start,
-        // The encoder still sends, or has ended: not the pulses that it needs.
+        // The encoder is still sending, or has stopped early: not exactly its pulses.
         cause::DATA_NOT_FALLING => Fate::Pulses,
         _ => Fate::Refused,
     }

@@ -1,4 +1,4 @@
-//! Shmoo maps: a channel with its encoder and line, run under every pair of conditions, and what became of its frames.
+//! Shmoo maps: a channel with its encoder and line, run under every pair of conditions, and the fate of its frames.
 
 mod axis;
 mod judge;
@@ -11,21 +11,21 @@ pub use judge::{Fate, Tally};
 pub use published::{Published, PUBLISHED};
 
 use crate::campaign::{self, CampaignError, Case, RunOptions};
-use crate::decimal;
+use endat_draw::decimal;
 use std::fmt::Write as _;
 
-/// What is to be run.
+/// Plan of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Across.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Upwards.
+    /// Vertical axis.
     pub y: Axis,
-    /// What is the same everywhere.
+    /// Common conditions.
     pub conditions: Conditions,
-    /// Channels in each cell, each with random numbers of its own.
+    /// Channels in each cell, each with other random numbers.
     pub runs: usize,
-    /// Frames of each channel behind the one that measures the delay.
+    /// Frames of each channel after the one that measures the delay.
     pub frames: usize,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -34,7 +34,7 @@ pub struct Plan {
 /// A map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// What was run.
+    /// Plan.
     pub plan: Plan,
     /// The cells, line by line from the first value of y on.
     pub cells: Vec<Tally>,
@@ -42,16 +42,16 @@ pub struct Map {
 
 /// Decimals of the values of an axis.
 pub const DECIMALS: usize = 4;
-/// How the table of a map begins, behind the names of its axes.
+/// Start of a map's table, after the names of its axes.
 const COLUMNS: &str = "fate,frames,good,margin_percent";
 
 impl Plan {
-    /// Channels in all cells together.
+    /// Number of channels in all cells.
     pub fn channels(&self) -> usize {
         self.x.values.len() * self.y.values.len() * self.runs
     }
 
-    /// Conditions of the cells, in their order.
+    /// Conditions of the cells, in order.
     fn conditions(&self) -> impl Iterator<Item = Conditions> + '_ {
         self.y.values.iter().flat_map(move |y| {
             self.x.values.iter().map(move |x| {
@@ -63,7 +63,7 @@ impl Plan {
         })
     }
 
-    /// Every channel of the map, those of a cell one behind the other.
+    /// Every channel of the map, cell by cell.
     fn cases(&self) -> Vec<Case> {
         let mut cases = Vec::new();
         for conditions in self.conditions() {
@@ -75,10 +75,10 @@ impl Plan {
         cases
     }
 
-    /// Runs the map on all processors; `progress` is told how many channels are done.
+    /// Runs the map on all processors; `progress` receives the number of finished channels.
     ///
     /// # Errors
-    /// If the channel cannot be made: a fault of this program.
+    /// If the channel cannot be elaborated: a bug in this program.
     pub fn run(
         &self,
         threads: usize,
@@ -103,7 +103,7 @@ impl Plan {
 }
 
 impl Map {
-    /// The cell at these places of the axes.
+    /// The cell at these positions of the axes.
     pub fn cell(&self, x: usize, y: usize) -> &Tally {
         &self.cells[y * self.plan.x.values.len() + x]
     }
@@ -113,7 +113,7 @@ impl Map {
         self.count(Fate::Good)
     }
 
-    /// Cells with this fate.
+    /// Number of cells with this fate.
     pub fn count(&self, fate: Fate) -> usize {
         self.cells.iter().filter(|c| c.fate() == fate).count()
     }
@@ -153,7 +153,7 @@ impl Map {
     }
 }
 
-/// Whether a file that begins like this can be the table of a map.
+/// True if a file with this start may be the table of a map.
 pub fn is_table(head: &str) -> bool {
     let first = head.lines().next().unwrap_or_default();
     let rest = first.split_once(',').and_then(|(_, r)| r.split_once(','));

@@ -1,11 +1,11 @@
-//! What others have published about cable and clock.
+//! Published limits of cable and clock.
 
-/// A limit that others give.
+/// A published limit.
 #[derive(Clone, Copy, Debug)]
 pub struct Published {
-    /// Whose, and where it is from.
+    /// Title with source.
     pub title: &'static str,
-    /// Cable in metres and EnDat clock in MHz: the corners of what is promised, or points that were reached.
+    /// Cable in metres and EnDat clock in MHz: corners of a guaranteed area, or measured points.
     pub points: &'static [(f64, f64)],
 }
 
@@ -15,7 +15,7 @@ const fn uncompensated_mhz(cable_m: f64) -> f64 {
     1.0 / (2.0 * (0.2 + 0.01 * cable_m))
 }
 
-/// Points of the curve of [`uncompensated_mhz`].
+/// Points of the curve [`uncompensated_mhz`].
 const UNCOMPENSATED: [(f64, f64); 32] = {
     let mut points = [(0.0, 0.0); 32];
     let mut i = 0;
@@ -27,7 +27,7 @@ const UNCOMPENSATED: [(f64, f64); 32] = {
     points
 };
 
-/// The limits that a map of cable and clock shows.
+/// The limits in a map of cable and clock.
 pub const PUBLISHED: [Published; 3] = [
     Published {
         title: "TI AM243x receiver: 8 MHz to 100 m, 16 MHz to 20 m",

@@ -29,7 +29,7 @@ fn a_sound_line_is_sampled_near_the_middle_of_the_bit() {
     for cell in &map.cells {
         assert_eq!((cell.fate(), cell.frames()), (Fate::Good, 10));
     }
-    // A cycle and a half of 64, 16, 8 from the middle at most.
+    // At most a cycle and a half of 64, 16, 8 from the middle.
     for (row, cycles) in [64.0, 16.0, 8.0].into_iter().enumerate() {
         for column in 0..3 {
             let margin = map.cell(column, row).margin().unwrap();
@@ -43,7 +43,7 @@ fn a_sound_line_is_sampled_near_the_middle_of_the_bit() {
 
 #[test]
 fn what_cannot_be_is_told_apart() {
-    // Bits of 62.5 ns: a filter of 117 ns lets none through; jitter of 15 ns is bearable, of 50 ns more than half a bit.
+    // Bits of 62.5 ns: a filter of 117 ns suppresses all; jitter of 15 ns is tolerated, 50 ns is more than half a bit.
     let mut plan = plan(
         (Quantity::Jitter, &[0.0, 15.0, 50.0]),
         (Quantity::Filter, &[0.0, 15.0]),

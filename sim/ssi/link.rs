@@ -1,4 +1,4 @@
-//! One SSI encoder at the end of one line.
+//! An SSI encoder with its line.
 
 use super::{Encoder, EncoderConfig, Violation};
 use crate::bench::OtherEncoder;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Position at a time.
 pub type SsiMotion = Arc<dyn Fn(Time) -> u64 + Send + Sync>;
 
-/// A line with its encoder; each way takes the same time. DATA is HIGH while nobody drives it.
+/// A line with its encoder; both directions have the same delay. Undriven DATA is HIGH.
 pub struct SsiLink {
     encoder: Encoder,
     delay: Time,
@@ -25,7 +25,7 @@ pub struct SsiLink {
 }
 
 impl SsiLink {
-    /// An encoder `delay` away.
+    /// An encoder with the line delay `delay`.
     pub fn new(config: EncoderConfig, delay: Time) -> Self {
         Self {
             encoder: Encoder::new(config),
@@ -40,7 +40,7 @@ impl SsiLink {
         }
     }
 
-    /// Its shaft moves like this; a position is taken at the first falling edge of a frame.
+    /// Sets the motion of the shaft; a position is latched at the first falling edge of a frame.
     pub fn set_motion(&mut self, motion: SsiMotion) {
         self.motion = Some(motion);
     }
@@ -50,7 +50,7 @@ impl SsiLink {
         self.is_open = true;
     }
 
-    /// Puts it in again.
+    /// Plugs it in again.
     pub fn plug(&mut self) {
         self.is_open = false;
     }
@@ -60,12 +60,12 @@ impl SsiLink {
         &self.encoder
     }
 
-    /// The encoder, to make something wrong with it, or to move its shaft.
+    /// The encoder, to disturb it, or to move its shaft.
     pub fn encoder_mut(&mut self) -> &mut Encoder {
         &mut self.encoder
     }
 
-    /// What the encoder does to the line goes on its way.
+    /// Puts the encoder's output on the line.
     fn listen(&mut self, time: Time) {
         let level = self.encoder.data();
         if level != self.sent {
@@ -104,7 +104,7 @@ impl OtherEncoder for SsiLink {
 
     fn advance_to(&mut self, time: Time) -> bool {
         let at = |event: Option<Time>| event.unwrap_or(Time::MAX);
-        // What was changed from outside acts at once.
+        // A change from outside takes effect at once.
         self.listen(time);
         loop {
             let heard = at(self.to_encoder.front().map(|(t, _)| *t));

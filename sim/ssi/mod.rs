@@ -1,8 +1,8 @@
 //! SSI encoder, written from the encoder's side of the interface.
 //!
-//! It works in picoseconds and only at edges. The first falling edge of the clock takes the position; each rising edge puts the next bit on
-//! DATA, most significant first, and the one behind the last bit LOW. Each falling edge starts the recovery time tm anew; when it is over,
-//! DATA goes HIGH and the next falling edge takes a new position. It is strict: what the receiver does wrong is noted as a [`Violation`].
+//! It works in picoseconds and only at edges. The first falling edge of the clock latches the position; each rising edge puts the next bit on
+//! DATA, most significant first, and the edge after the last bit sets DATA LOW. Each falling edge restarts the recovery time tm; at its end
+//! DATA goes HIGH and the next falling edge latches a new position. It is strict: every error of the receiver is noted as a [`Violation`].
 //! It shares no code with the core.
 //!
 //! ```text
@@ -22,36 +22,36 @@ pub use violation::Violation;
 use crate::{rng::Rng, Journal, Time, NS, US};
 use std::collections::VecDeque;
 
-/// An encoder and its moment.
+/// An encoder and its present state.
 #[derive(Clone, Debug)]
 pub struct EncoderConfig {
     /// Width of a position, 1 to 48 bits.
     pub position_bits: u32,
-    /// It sends Gray code.
+    /// Sends Gray code.
     pub gray: bool,
-    /// Behind the position comes a bit with which the ones are even, or odd if this is true.
+    /// A parity bit after the position: even, or odd if true.
     pub parity: Option<bool>,
-    /// Bits before the position, in the order in which it sends them.
+    /// Bits before the position, in the order of transmission.
     pub before: Vec<Extra>,
     /// Bits after the position, and after its parity bit.
     pub after: Vec<Extra>,
-    /// DATA keeps the last bit until `tm` is over, instead of LOW; only without `repeats`.
+    /// DATA keeps the last bit, instead of LOW, until `tm` is over; only without `repeats`.
     pub keeps_last: bool,
-    /// It sends the same position again if the clock goes on within `tm`; otherwise DATA stays LOW then.
+    /// Sends the same position again if the clock continues within `tm`; otherwise DATA stays LOW then.
     pub repeats: bool,
     /// Recovery time: from the last falling edge until DATA is HIGH.
     pub tm: Time,
-    /// From a rising edge of the clock to its bit.
+    /// Delay from a rising edge of the clock to its bit.
     pub bit_delay: Time,
-    /// Each bit comes later by at most this.
+    /// Largest additional delay of a bit.
     pub jitter: Time,
     /// Shortest pulse of the clock.
     pub pulse_min: Time,
-    /// Position, as a number.
+    /// Position as a number.
     pub position: u64,
-    /// What is wrong with it.
+    /// Fault.
     pub defect: Defect,
-    /// For the jitter.
+    /// Seed of the jitter.
     pub seed: u64,
 }
 
@@ -78,7 +78,7 @@ impl Default for EncoderConfig {
 }
 
 impl EncoderConfig {
-    /// Its bits, most significant first, in its code.
+    /// The bits, most significant first, in the encoder's code.
     fn bits(&self) -> Vec<bool> {
         let code = match self.gray {
             true => self.position ^ self.position >> 1,
@@ -98,16 +98,16 @@ impl EncoderConfig {
 /// A bit that is not position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extra {
-    /// This level.
+    /// Constant level.
     Level(bool),
-    /// With it all bits that have been sent have an even number of ones, or an odd one if this is true.
+    /// Parity of all bits sent so far and this one: even, or odd if true.
     Parity(bool),
-    /// Six bits, most significant first: the remainder of all bits that have been sent, with six zeros after them, divided by x^6 + x + 1.
+    /// Six bits, most significant first: the remainder of all bits sent so far, followed by six zeros, divided by x^6 + x + 1.
     Crc6,
 }
 
 impl Extra {
-    /// Sends it after these.
+    /// Appends it to the sent bits.
     fn send(self, sent: &mut Vec<bool>) {
         match self {
             Self::Level(level) => sent.push(level),
@@ -126,12 +126,12 @@ impl Extra {
     }
 }
 
-/// What may be wrong.
+/// Faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defect {
     /// Nothing.
     None,
-    /// It does not hear the clock: DATA stays HIGH.
+    /// The encoder ignores the clock: DATA stays HIGH.
     Silent,
     /// DATA is held LOW.
     StuckLow,
@@ -139,24 +139,24 @@ pub enum Defect {
     Flip {
         /// 0, or 1 for the repetition.
         copy: usize,
-        /// Which bit.
+        /// Bit.
         bit: usize,
     },
-    /// It takes a new position for each copy.
+    /// Latches a new position for each copy.
     TakesAnew,
-    /// It has so many bits more, all HIGH.
+    /// Has this many additional bits, all HIGH.
     Longer(usize),
 }
 
 /// The encoder.
 #[derive(Clone)]
 pub struct Encoder {
-    /// What it is; may be changed between two frames.
+    /// Configuration; may be changed between two frames.
     pub config: EncoderConfig,
     rng: Rng,
     clock: bool,
     changed: Option<Time>,
-    /// Bits of the copy under way, and the LOW one behind them; empty between frames.
+    /// Bits of the copy under way, and the LOW bit after them; empty between frames.
     word: Vec<bool>,
     rises: u64,
     copies: usize,
@@ -186,7 +186,7 @@ impl Encoder {
         }
     }
 
-    /// DATA, as it drives it.
+    /// DATA as driven by the encoder.
     pub fn data(&self) -> bool {
         match self.config.defect {
             Defect::StuckLow => false,
@@ -195,40 +195,40 @@ impl Encoder {
         }
     }
 
-    /// Notes only so many violations, the last ones.
+    /// Keeps only the last `most` violations.
     pub fn keep(&mut self, most: usize) {
         self.violations.keep(most);
     }
 
-    /// Whole frames; a position that comes twice is one.
+    /// Number of whole frames; a repeated position counts once.
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// What the receiver has done wrong.
+    /// Violations of the receiver.
     pub fn violations(&self) -> &[Violation] {
         &self.violations
     }
 
-    /// Whether the next falling edge takes a new position.
+    /// True if the next falling edge latches a new position.
     pub fn is_ready(&self) -> bool {
         self.word.is_empty()
     }
 
-    /// Notes what would otherwise be noted at each edge.
+    /// Notes a violation once instead of at each edge.
     pub(super) fn note(&mut self, violation: Violation) {
         if self.violations.last() != Some(&violation) {
             self.violations.push(violation);
         }
     }
 
-    /// When it wants to act next.
+    /// Time of its next action.
     pub fn next_event(&self) -> Option<Time> {
         let planned = self.planned.front().map(|(time, _)| *time);
         [planned, self.ready].into_iter().flatten().min()
     }
 
-    /// Lets it act up to `time`.
+    /// Executes its actions up to `time`.
     pub fn advance(&mut self, time: Time) {
         while let Some(event) = self.next_event().filter(|event| *event <= time) {
             if self.planned.front().is_some_and(|(at, _)| *at == event) {
@@ -239,10 +239,10 @@ impl Encoder {
         }
     }
 
-    /// The recovery time is over.
+    /// Ends the recovery time.
     fn recover(&mut self) {
         let whole = self.word.len() as u64;
-        // Clocks behind the only copy have been noted.
+        // Clocks after the only copy have been noted.
         let is_whole = match self.config.repeats {
             true => self.rises == whole * (self.copies as u64 + 1),
             false => self.rises >= whole,

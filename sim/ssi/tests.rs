@@ -1,9 +1,9 @@
-//! What the encoder notes, each with the receiver that does it.
+//! Violations noted by the encoder, each with a receiver that causes it.
 
 use super::*;
 use crate::US;
 
-/// Clocks an encoder; gives its bits, taken where the clock rises for the next.
+/// Clocks an encoder; returns its bits, sampled at the next rising edge.
 fn clocked(encoder: &mut Encoder, start: Time, clocks: usize, half: Time) -> Vec<bool> {
     let mut bits = vec![];
     for n in 0..clocks as u64 {
@@ -32,7 +32,7 @@ fn a_position_comes_most_significant_bit_first_and_again() {
     let is = [true, false, true, true, false, false, true, false];
     let mut one = encoder(EncoderConfig::default());
     assert_eq!(clocked(&mut one, 0, 9, US), is);
-    assert!(one.data(), "HIGH behind the recovery time");
+    assert!(one.data(), "HIGH after the recovery time");
     let both = [&is[..], &[false], &is[..]].concat();
     assert_eq!(clocked(&mut one, 500 * US, 18, US), both);
     assert_eq!((one.frames(), one.violations()), (2, &[][..]));
@@ -76,7 +76,7 @@ fn what_a_receiver_does_wrong_is_noted() {
     assert_eq!(noted(usual(), 18, US), []);
 }
 
-/// A receiver that waits for HIGH before it clocks would wait for ever otherwise.
+/// Otherwise a receiver that waits for HIGH before it clocks would wait forever.
 #[test]
 fn data_is_high_after_a_low_phase_that_ended_the_frame() {
     let mut encoder = encoder(EncoderConfig::default());

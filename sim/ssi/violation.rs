@@ -1,15 +1,15 @@
-//! What a receiver can do wrong towards an SSI encoder.
+//! Violations by the receiver of an SSI encoder.
 
 use std::fmt;
 
-/// A fault of the receiver.
+/// A violation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Violation {
-    /// The clock stayed HIGH for the recovery time before the frame was whole, or went on behind it: so many rising edges.
+    /// The clock stayed HIGH for the recovery time before the frame was complete, or continued after it: number of rising edges.
     Clocks(u64),
     /// A pulse of the clock was shorter than the encoder's shortest.
     ShortPulse,
-    /// The clock went on within the recovery time, and this encoder does not send a position twice.
+    /// The clock continued within the recovery time, and this encoder does not repeat a position.
     NoRepeat,
     /// The receiver drives DATA.
     Conflict,

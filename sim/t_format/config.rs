@@ -1,17 +1,17 @@
-//! What a T-format encoder is, and what may be wrong with it.
+//! Configuration of a T-format encoder, with its faults.
 
 use crate::{Time, MS, US};
 
-/// An encoder and its moment.
+/// An encoder and its present state.
 #[derive(Clone, Debug)]
 pub struct EncoderConfig {
     /// Bit rate, in bits per second.
     pub bit_hz: u64,
-    /// Its own rate is higher by this, in parts per million.
+    /// Deviation of its rate, in parts per million.
     pub rate_error_ppm: i64,
-    /// From the end of the request to the start bit of the reply.
+    /// Time from the end of the request to the start bit of the reply.
     pub reply_gap: Time,
-    /// Each edge comes sooner or later by at most this.
+    /// Largest deviation of each edge.
     pub jitter: Time,
     /// Shortest time from the end of a reply to the next request.
     pub rest: Time,
@@ -21,22 +21,22 @@ pub struct EncoderConfig {
     pub multi_turn: u32,
     /// Kind of encoder.
     pub encoder_id: u8,
-    /// Status field, without complaints.
+    /// Status field, without error bits.
     pub status: u8,
     /// Alarm field.
     pub alarm: u8,
     /// Pages of the EEPROM, of 127 bytes each.
     pub eeprom_pages: u8,
-    /// How long the EEPROM is busy with a byte.
+    /// Time that the EEPROM is busy with a byte.
     pub write_time: Time,
-    /// What is wrong with it.
+    /// Fault.
     pub defect: Defect,
-    /// For the jitter.
+    /// Seed of the jitter.
     pub seed: u64,
 }
 
 impl Default for EncoderConfig {
-    /// A TS5700N8401 whose battery is empty, as in the published log.
+    /// A TS5700N8401 with an empty battery, as in the published log.
     fn default() -> Self {
         Self {
             bit_hz: 2_500_000,
@@ -50,7 +50,7 @@ impl Default for EncoderConfig {
             status: 0x20,
             alarm: 0xC8,
             eeprom_pages: 8,
-            // No source: a usual time of such memories.
+            // No source: typical for such memories.
             write_time: 5 * MS,
             defect: Defect::None,
             seed: 1,
@@ -59,13 +59,13 @@ impl Default for EncoderConfig {
 }
 
 impl EncoderConfig {
-    /// A bit of the nominal rate.
+    /// Duration of a bit at the nominal rate.
     pub fn nominal_bit(&self) -> Time {
         1_000_000_000_000 / self.bit_hz
     }
 }
 
-/// What may be wrong with a reply. Fields count from 0, the control field; bits of a field from 0, the first data bit.
+/// Fault of a reply. Fields count from 0, the control field; bits of a field from 0, the first data bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defect {
     /// Nothing.
@@ -74,9 +74,9 @@ pub enum Defect {
     Silent,
     /// The line is held LOW.
     StuckLow,
-    /// A reply with another ID, its parity right.
+    /// A reply with another ID and matching parity.
     OtherId(u8),
-    /// A bit is wrong; CRC and parity are those of the right one.
+    /// A wrong bit; CRC and parity match the right one.
     Flip {
         /// Field.
         field: usize,
@@ -93,20 +93,20 @@ pub enum Defect {
         /// Fields.
         fields: usize,
     },
-    /// There is a pause before a field.
+    /// A pause before a field.
     Pause {
         /// Field.
         field: usize,
-        /// How long.
+        /// Duration.
         length: Time,
     },
-    /// More bits of the status field.
+    /// Additional bits of the status field.
     Status(u8),
     /// A LOW pulse before the reply.
     Pulse {
-        /// From its start to the start bit.
+        /// Time from its start to the start bit.
         ahead: Time,
-        /// How long.
+        /// Duration.
         width: Time,
     },
 }

@@ -28,7 +28,7 @@ impl Eeprom {
             .unwrap_or(0)
     }
 
-    /// A read, or a write; address and data of the reply.
+    /// A read or a write; returns address and data of the reply.
     pub fn access(
         &mut self,
         address: u8,

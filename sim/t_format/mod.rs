@@ -1,8 +1,8 @@
 //! T-format encoder, written from the encoder's side of the interface.
 //!
-//! It works in picoseconds and only at edges: [`Encoder::receiver`] tells it what the receiver does to the line,
-//! [`Encoder::next_event`] says when it wants to act by itself, [`Encoder::advance`] lets it act, [`Encoder::output`] is what it
-//! does to the line. It is strict: what the receiver does wrong is noted as a [`Violation`]. It shares no code with the core.
+//! It works in picoseconds and only at edges: [`Encoder::receiver`] receives the receiver's drive,
+//! [`Encoder::next_event`] returns the time of its next action, [`Encoder::advance`] executes it, [`Encoder::output`] is its
+//! drive on the line. It is strict: every error of the receiver is noted as a [`Violation`]. It shares no code with the core.
 //!
 //! ```text
 //! receiver ~~~~\__request__/~|                                        |~~
@@ -25,19 +25,19 @@ use crate::{encoder::Drive, rng::Rng, Journal, Time};
 use memory::Eeprom;
 use std::collections::VecDeque;
 
-/// A reset takes this many requests in a row.
+/// Consecutive requests of a reset.
 pub const RESET_REQUESTS: u32 = 10;
-/// Complaint in the status field: parity of the request.
+/// Error bit in the status field: parity of the request.
 pub const COMPLAINT_PARITY: u8 = 1 << 6;
-/// Complaint in the status field: delimiter of the request.
+/// Error bit in the status field: delimiter of the request.
 pub const COMPLAINT_DELIMITER: u8 = 1 << 7;
 
-/// A request as far as it has come.
+/// The received part of a request.
 #[derive(Clone, Debug, Default)]
 struct Hearing {
-    /// When the field under way began.
+    /// Start of the field under way.
     start: Option<Time>,
-    /// Bits of it so far.
+    /// Its bits so far.
     bits: Vec<bool>,
     /// Fields before it.
     bytes: Vec<u8>,
@@ -47,22 +47,22 @@ struct Hearing {
 /// The encoder.
 #[derive(Clone)]
 pub struct Encoder {
-    /// What it is; may be changed between two exchanges.
+    /// Configuration; may be changed between two exchanges.
     pub config: EncoderConfig,
     rng: Rng,
     now: Time,
     receiver: Drive,
     output: Drive,
     hearing: Hearing,
-    /// When an unfinished request is given up.
+    /// Time when an unfinished request is dropped.
     give_up: Option<Time>,
-    /// The driver must be on until then.
+    /// End of the time in which the driver must be on.
     drive_until: Option<Time>,
     planned: VecDeque<(Time, Drive)>,
-    /// When the last reply ended.
+    /// End of the last reply.
     ended: Option<Time>,
     resets: (u8, u32),
-    /// Where its positions are told from.
+    /// Origin of its reported positions.
     zero: (u32, u32),
     eeprom: Eeprom,
     violations: Journal<Violation>,
@@ -93,7 +93,7 @@ impl Encoder {
         }
     }
 
-    /// What it does to the line.
+    /// Drive on the line.
     pub fn output(&self) -> Drive {
         match self.config.defect {
             Defect::StuckLow => Drive::Low,
@@ -101,19 +101,19 @@ impl Encoder {
         }
     }
 
-    /// Notes only so many requests, replies and violations, the last ones.
+    /// Keeps only the last `most` requests, replies and violations.
     pub fn keep(&mut self, most: usize) {
         self.violations.keep(most);
         self.requests.keep(most);
         self.replies.keep(most);
     }
 
-    /// How many whole requests have come.
+    /// Number of whole requests.
     pub fn request_count(&self) -> u64 {
         self.requests.count()
     }
 
-    /// What the receiver has done wrong.
+    /// Violations of the receiver.
     pub fn violations(&self) -> &[Violation] {
         &self.violations
     }
@@ -123,7 +123,7 @@ impl Encoder {
         &self.requests
     }
 
-    /// Bytes of each reply, as the encoder means them.
+    /// Bytes of each reply, before corruption.
     pub fn replies(&self) -> &[Vec<u8>] {
         &self.replies
     }
@@ -133,12 +133,12 @@ impl Encoder {
         self.eeprom.byte(page, address)
     }
 
-    /// One bit as the encoder times it.
+    /// Duration of a bit of the encoder.
     fn bit(&self) -> Time {
         self.config.wire().bit
     }
 
-    /// When it wants to act next.
+    /// Time of its next action.
     pub fn next_event(&self) -> Option<Time> {
         let sample = self.hearing.start.map(|start| {
             let bits = self.hearing.bits.len() as u64;
@@ -148,7 +148,7 @@ impl Encoder {
         [sample, planned, self.give_up].into_iter().flatten().min()
     }
 
-    /// Lets it act up to `time`.
+    /// Executes its actions up to `time`.
     pub fn advance(&mut self, time: Time) {
         while let Some(event) = self.next_event().filter(|event| *event <= time) {
             self.now = event;
@@ -171,7 +171,7 @@ impl Encoder {
         self.now = time;
     }
 
-    /// The receiver does this to the line from `time` on.
+    /// The receiver drives the line from `time` on.
     pub fn receiver(&mut self, time: Time, drive: Drive) {
         self.advance(time);
         let before = self.receiver;
@@ -191,7 +191,7 @@ impl Encoder {
         }
         match self.hearing.start {
             Some(start) => {
-                // Whole cells of the nominal rate, whatever the encoder's own is.
+                // Whole cells of the nominal rate, for any rate of the encoder.
                 let cell = self.config.nominal_bit();
                 let off = (time - start + cell / 2) % cell;
                 if off.abs_diff(cell / 2) > cell / 16 {
@@ -216,7 +216,7 @@ impl Encoder {
         }
     }
 
-    /// Notes what would otherwise be noted at each edge.
+    /// Notes a violation once instead of at each edge.
     fn note(&mut self, violation: Violation) {
         if self.violations.last() != Some(&violation) {
             self.violations.push(violation);
@@ -283,7 +283,7 @@ impl Encoder {
         self.send(&reply, end + self.config.reply_gap);
     }
 
-    /// What it answers.
+    /// Makes the reply.
     fn reply(&mut self, id: u8, request: &[u8], complaints: u8, end: Time) -> Vec<u8> {
         self.count_resets(id);
         let control = match self.config.defect {
@@ -322,7 +322,7 @@ impl Encoder {
         bytes
     }
 
-    /// Single- and multi-turn position as it tells them: from where they have been reset.
+    /// Reported single- and multi-turn position: relative to their reset.
     pub fn told(&self) -> (u32, u32) {
         let from = |place: u32, zero: u32| place.wrapping_sub(zero) & 0xFF_FFFF;
         let config = &self.config;
@@ -341,7 +341,7 @@ impl Encoder {
         if self.resets.1 != RESET_REQUESTS {
             return;
         }
-        // The shaft stays where it is; from now on it is told from here.
+        // The shaft does not move; this place becomes the origin.
         if id == 8 {
             self.zero.0 = self.config.single_turn;
         }

@@ -1,4 +1,4 @@
-//! The encoder is asked, rightly and wrongly.
+//! Correct and incorrect requests to the encoder.
 
 use super::*;
 use crate::{MS, US};
@@ -24,7 +24,7 @@ fn drive(encoder: &mut Encoder, start: Time, levels: &[bool]) -> Time {
     end
 }
 
-/// The bytes that the encoder sends from `from` on, sampled in the middle of their bits.
+/// The bytes from the encoder after `from`, sampled in the middle of their bits.
 fn listen(encoder: &mut Encoder, from: Time) -> Vec<u8> {
     let mut bytes = vec![];
     let mut time = from;
@@ -112,7 +112,7 @@ fn a_reset_takes_ten_requests_in_a_row() {
     assert_eq!(encoder.told(), (0, 6));
     (0..10).for_each(|_| drop(ask(&mut encoder, 0x62)));
     assert_eq!((encoder.told(), encoder.config.alarm), ((0, 0), 0));
-    // The shaft turns on.
+    // The shaft moves.
     encoder.config.single_turn = 4;
     encoder.config.multi_turn = 7;
     assert_eq!(encoder.told(), (0xFF_FFFF, 1));

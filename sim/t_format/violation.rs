@@ -1,8 +1,8 @@
-//! What a receiver can do wrong towards a T-format encoder.
+//! Violations by the receiver of a T-format encoder.
 
 use std::fmt;
 
-/// A fault of the receiver.
+/// A violation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Violation {
     /// The sync code of the request is not 0, 1, 0.
@@ -13,7 +13,7 @@ pub enum Violation {
     Delimiter,
     /// The CRC of the request is wrong.
     Crc,
-    /// No such request.
+    /// Unknown request ID.
     UnknownId(u8),
     /// A request without all its fields.
     Incomplete,
@@ -23,7 +23,7 @@ pub enum Violation {
     ReleasedEarly,
     /// Both drivers are on.
     Conflict,
-    /// A request before the reply to the one before it.
+    /// A request before the reply to the previous one.
     Impatient,
     /// A request too soon after a reply.
     TooEarly,

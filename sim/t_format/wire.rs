@@ -3,17 +3,17 @@
 use super::config::{Defect, EncoderConfig};
 use crate::{rng::Rng, Time};
 
-/// How bits are put on the line.
+/// Bit timing on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wire {
-    /// A bit.
+    /// Duration of a bit.
     pub bit: Time,
-    /// Each edge comes sooner or later by at most this.
+    /// Largest deviation of each edge.
     pub jitter: Time,
 }
 
 impl EncoderConfig {
-    /// How it puts bits on the line.
+    /// Bit timing of the encoder.
     pub fn wire(&self) -> Wire {
         let bit = self.nominal_bit() as i64;
         Wire {
@@ -24,7 +24,7 @@ impl EncoderConfig {
 }
 
 impl Wire {
-    /// Changes of the line while it has these levels, one a bit, from `start` on; it is HIGH before and after.
+    /// Changes of the line with these levels, one for each bit, from `start` on; it is HIGH before and after.
     pub fn changes(&self, levels: &[bool], start: Time, rng: &mut Rng) -> Vec<(Time, bool)> {
         let mut changes = vec![];
         let mut before = true;
@@ -49,13 +49,13 @@ fn field(byte: u8) -> impl Iterator<Item = bool> {
     [false].into_iter().chain(bits).chain([true])
 }
 
-/// Changes of the line while these fields are sent back to back from `start` on.
+/// Changes of the line with these consecutive fields from `start` on.
 pub fn edges(bytes: &[u8], wire: &Wire, start: Time, rng: &mut Rng) -> Vec<(Time, bool)> {
     let levels: Vec<bool> = bytes.iter().flat_map(|byte| field(*byte)).collect();
     wire.changes(&levels, start, rng)
 }
 
-/// The same with a defect; the second value is when the driver goes off.
+/// As [`edges`], with a defect; the second value is the time when the driver goes off.
 pub(super) fn spoilt(
     bytes: &[u8],
     wire: &Wire,

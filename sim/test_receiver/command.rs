@@ -1,4 +1,4 @@
-//! What belongs to each mode command, seen from the receiver.
+//! Properties of each mode command for the receiver.
 
 use crate::frame::crc5;
 
@@ -8,12 +8,12 @@ const PARAMETER_COMMANDS: [u8; 6] = [
 const SUPPLEMENT_COMMANDS: [u8; 5] = [0b001_001, 0b011_011, 0b100_100, 0b101_101, 0b110_110];
 const TEST_VALUES: u8 = 0b010_101;
 
-/// 8 and 16 bits follow the six of the command.
+/// True if 8 and 16 bits follow the six of the command.
 pub fn has_parameter(code: u64) -> bool {
     PARAMETER_COMMANDS.contains(&(code as u8))
 }
 
-/// 8 and 16 bits follow the answer.
+/// True if 8 and 16 bits follow the answer.
 pub fn has_supplement(code: u64) -> bool {
     SUPPLEMENT_COMMANDS.contains(&(code as u8))
 }
@@ -31,7 +31,7 @@ pub fn payload_bits(code: u64, position_bits: usize) -> usize {
     }
 }
 
-/// Level of DATA after falling edge `k` of a supplement (1 = first); none = released.
+/// Level of DATA after falling edge `k` of a supplement (1 = first); `None` = released.
 pub fn supplement_bit(k: u32, address: u64, parameter: u64) -> Option<bool> {
     let fields = address << 16 | parameter;
     match k {
@@ -42,7 +42,7 @@ pub fn supplement_bit(k: u32, address: u64, parameter: u64) -> Option<bool> {
     }
 }
 
-/// Covered bits as a number, MSB first, and whether the five bits behind them are their CRC.
+/// Covered bits as a number, MSB first, and whether the five bits after them are their CRC.
 pub fn block(bits: &[bool]) -> (u128, bool) {
     let number = |bits: &[bool]| bits.iter().fold(0u128, |n, b| n << 1 | u128::from(*b));
     let (covered, crc) = bits.split_at(bits.len() - 5);

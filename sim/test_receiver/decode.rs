@@ -1,10 +1,10 @@
-//! Takes answers apart.
+//! Decodes answers.
 
 use super::{command, TestReceiver};
 use crate::frame::crc5;
 
 impl TestReceiver {
-    /// Takes the answer apart and returns the cause.
+    /// Decodes the answer and returns the cause.
     pub(super) fn decode(&mut self) -> u128 {
         let is_position = !command::has_parameter(self.at("command"));
         let (head, infos) = self.bits.split_at(self.head_bits());

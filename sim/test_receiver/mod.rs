@@ -1,8 +1,8 @@
-//! A plain behavioural EnDat receiver with the ports of the block `Channel`, to try the bench out without the core.
+//! A simple behavioural EnDat receiver with the ports of the block `Channel`, for tests of the bench without the core.
 //!
-//! It is not the core and shares nothing with it; it works on lists where hardware would use counters. Beyond the block's ports it
-//! takes `address` and `parameter` for the commands that send them, `infos` (bit 0: additional data 1 is expected, bit 1: 2),
-//! and gives `reply`, `info_1`, `info_2` (24 covered bits each) and `info_errors` (CRC errors, bits as in `infos`).
+//! It is independent of the core and uses lists instead of counters. In addition to the block's ports it
+//! has inputs `address` and `parameter` for the commands that send them, `infos` (bit 0: additional data 1 is expected, bit 1: 2),
+//! and outputs `reply`, `info_1`, `info_2` (24 covered bits each) and `info_errors` (CRC errors, bits as in `infos`).
 
 mod command;
 mod decode;
@@ -11,16 +11,16 @@ mod supplement;
 use crate::bench::ChannelSettings;
 use rtl_design::engine::{Engine, Port, PortId};
 
-/// What can be made wrong in it, to see the bench object.
+/// Faults of the receiver that the bench must detect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bug {
     #[default]
     None,
-    /// Gives this many clock pulses too many.
+    /// Sends additional clock pulses.
     ExtraPulses(i64),
     /// Keeps its driver on for one more falling edge (or more).
     LateRelease(u32),
-    /// Does not wait out the recovery time.
+    /// Ignores the recovery time.
     NoRecovery,
     /// Samples this many cycles too late.
     LateSample(u64),
@@ -70,7 +70,7 @@ pub const LATENCY: u64 = 2;
 enum Phase {
     Idle,
     Run,
-    /// CLOCK LOW until then, before a supplement.
+    /// CLOCK is LOW until then, before a supplement.
     Park {
         until: u64,
     },
@@ -107,7 +107,7 @@ pub struct TestReceiver {
     calibrating: bool,
     position: u128,
     overrun: bool,
-    /// A frame that measures the delay brings no position; another one follows by itself.
+    /// A frame that measures the delay brings no position; another one follows automatically.
     measures_apart: bool,
     once_more: bool,
 }
@@ -164,7 +164,7 @@ impl TestReceiver {
         }
     }
 
-    /// As the core does it: what measures the delay brings no position.
+    /// As in the core: a frame that measures the delay brings no position.
     pub fn measuring_apart(mut self) -> Self {
         self.measures_apart = true;
         self
@@ -201,7 +201,7 @@ impl TestReceiver {
         self.head_bits() + 30 * infos
     }
 
-    /// An edge of a frame without parameter as the edge of this frame.
+    /// Converts an edge of a frame without parameter to this frame.
     fn later(&self, edge: u32) -> u32 {
         match command::has_parameter(self.at("command")) {
             true => edge + 24,
@@ -287,19 +287,19 @@ impl TestReceiver {
         (self.start_edge + self.edges_from_start()) as i64 + extra
     }
 
-    /// From the edge of the start bit to the last one; a supplement replaces the edge that ends other frames.
+    /// Edges from that of the start bit to the last one; a supplement replaces the edge that ends other frames.
     fn edges_from_start(&self) -> usize {
         self.answer_bits() - usize::from(self.has_supplement())
     }
 
-    /// Whether the encoder needs one more edge even if it has already begun its answer as early as is still possible.
+    /// True if the encoder needs another edge even if it has begun its answer at the earliest possible time.
     fn may_rise(&self) -> bool {
         let (None, Some(delay)) = (self.start, self.delay) else {
             return true;
         };
         let excluded = |t: &u64| t + delay + self.period / 2 < self.cycle;
         let possible = self.rises.iter().take_while(|t| excluded(t)).count() + 1;
-        // The last edge of the frame is kept back: after it the clock must stay HIGH.
+        // Hold the last edge of the frame back: after it the clock must stay HIGH.
         self.rises.len() + 1 < possible.max(self.later(11) as usize) + self.edges_from_start()
     }
 
@@ -432,7 +432,7 @@ impl Engine for TestReceiver {
             Phase::Park { until } => self.park(until),
             Phase::Supplement => self.supplement(),
             Phase::Recover { since } => {
-                // The tail comes one signal delay after the last edge: LOW before that is a bit of the answer.
+                // The tail comes one signal delay after the last edge: LOW before that is an answer bit.
                 let waited = self.cycle - since;
                 let tail = waited > self.delay.unwrap_or(0) + self.period;
                 if tail && !data {
@@ -444,7 +444,7 @@ impl Engine for TestReceiver {
                     self.abort();
                     match std::mem::take(&mut self.once_more) {
                         true => self.finish(7),
-                        false => self.put("cause", 7), // of the result that is out already
+                        false => self.put("cause", 7), // cause of the published result
                     }
                 }
             }

@@ -2,7 +2,7 @@
 
 use super::{command, Phase, TestReceiver};
 
-/// Microseconds for which the clock is LOW before a supplement.
+/// Duration of clock LOW before a supplement, in microseconds.
 pub const PAUSE_US: u64 = 2;
 /// Rising edges of a supplement.
 const EDGES: u32 = 35;

@@ -1,15 +1,16 @@
-//! The EnDat port at its encoder: positions, the phase of the samples, requests and the service.
+//! The EnDat port with its encoder: positions, sampling phase, requests and the service.
 
 mod alignment;
+mod encoder;
 mod position;
 mod requests;
 mod service;
 
-// The tests of design/ are made of these, too.
+// Shared with the tests of design/.
 #[path = "../../design/tests/ghdl.rs"]
 mod ghdl;
 #[path = "../../design/tests/three_way.rs"]
 mod three_way;
-#[allow(dead_code)] // other crates take the rest
+#[allow(dead_code)] // other crates use the rest
 #[path = "../../design/tests/tools.rs"]
 mod tools;

@@ -13,7 +13,7 @@ use std::{
 };
 use vcd::{IdCode, TimescaleUnit, Value, VarType};
 
-/// What a signal can hold.
+/// Value of a signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Held {
     Level(Level),
@@ -43,41 +43,41 @@ struct Group {
 pub struct Wave {
     groups: Vec<Group>,
     end: Time,
-    /// The first frame, to open the viewer at.
+    /// The first frame, to which the viewer scrolls.
     focus: Option<(Time, Time)>,
 }
 
-/// Who writes the waveforms.
+/// Program name in the waveforms.
 const PROGRAM: &str = "endat-sim";
-/// How a layout begins.
+/// Start of a layout.
 const LAYOUT_HEAD: &str = "[*] GTKWave layout, written with the waveform";
 
-/// Whether a file that begins like this can be a waveform of ours.
+/// True if a file with this start may be a waveform of this program.
 pub fn is_vcd(head: &str) -> bool {
     head.split_whitespace().take(2).eq(["$version", PROGRAM])
 }
 
-/// Whether a file that begins like this can be a layout of ours; one that GTKWave has saved is not.
+/// True if a file with this start may be a layout of this program; one saved by GTKWave is not.
 pub fn is_layout(head: &str) -> bool {
     head.starts_with(LAYOUT_HEAD)
 }
 
-/// CLOCK and DATA of a link at the encoder's end as two scalars, in nanoseconds: what logic analysers' programs read.
+/// CLOCK and DATA of a link at the encoder's end as two scalars, in nanoseconds, for logic analyser programs.
 pub fn write_wires(link: &Link, out: impl Write) -> io::Result<()> {
     let (clock, data) = link.trace().map_or((&[][..], &[][..]), |t| {
         (&t.clock_at_encoder, &t.data_at_encoder)
     });
-    // DATA of the same nanosecond is there when CLOCK changes.
+    // DATA of the same nanosecond is written before CLOCK.
     write_scalars(&[("data", data), ("clk", clock)], None, out)
 }
 
-/// The line of an encoder of another protocol, at its end, in the same way.
+/// The line of an encoder of another protocol, at its end, in the same format.
 pub fn write_line(encoder: &dyn OtherEncoder, end: Time, out: impl Write) -> io::Result<()> {
-    // The last bits of a reply may be without an edge.
+    // The last bits of a reply may have no edge.
     write_scalars(&[("data", encoder.trace())], Some(end), out)
 }
 
-/// Named wires with their changes; those of the same nanosecond in this order.
+/// Named wires with their changes; changes in the same nanosecond keep this order.
 fn write_scalars(
     wires: &[(&str, &[(Time, bool)])],
     end: Option<Time>,
@@ -113,7 +113,7 @@ fn write_scalars(
 const TOP: &str = "bench";
 
 impl Wave {
-    /// Everything that a bench has recorded: its links, and the watched ports of the design.
+    /// All recordings of a bench: its links, and the watched ports of the design.
     pub fn of<E: Engine>(bench: &Bench<E>) -> Self {
         let end = bench.now();
         let mut groups: Vec<Group> = (0..bench.link_count())
@@ -252,7 +252,7 @@ impl Wave {
     }
 }
 
-/// Width of the part of GTKWave's window that shows waves.
+/// Width of the wave area in GTKWave's window.
 const VIEW_PIXELS: f64 = 1200.0;
 
 fn scalar(level: Level) -> Value {

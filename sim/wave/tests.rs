@@ -24,7 +24,7 @@ fn recorded() -> Bench<TestReceiver> {
     bench
 }
 
-/// What a VCD has.
+/// Content of a VCD.
 struct Read {
     header: vcd::Header,
     commands: Vec<vcd::Command>,
@@ -44,7 +44,7 @@ impl Read {
     /// Every change of a signal, as text.
     fn values(&self, path: &[&str], name: &str) -> Vec<(u64, String)> {
         let path = [path, &[name]].concat();
-        let var = self.header.find_var(&path).expect("the signal is there");
+        let var = self.header.find_var(&path).expect("the signal exists");
         let mut changes: Vec<(u64, String)> = Vec::new();
         let mut now = 0;
         for command in &self.commands {

@@ -1,6 +1,6 @@
 //! Channels of one card, each at its own rate, width, delay and mode: none notices the others.
 
-use endat_gen::config::load_preset;
+use endat_config::load_preset;
 use endat_hdl::{
     card::{service_times, uart_bridge::TIMEOUT_US},
     config::{CardConfig, ChannelConfig, LineParts},

@@ -1,7 +1,7 @@
 //! Files of boards and families, as a user writes them.
 
 use crate::program::{bad, good, Dir};
-use endat_gen::board::Board;
+use endat_config::board::Board;
 use std::fs;
 use std::path::Path;
 

@@ -7,8 +7,8 @@ mod vendor;
 
 use crate::constraints::{lint_top, play};
 use crate::program::good;
-use endat_gen::board::{self, Board};
-use endat_gen::config::{parse_on, preset_for, Project, DEFAULT_PRESET};
+use endat_config::board::{self, Board};
+use endat_config::{parse_on, preset_for, Project, DEFAULT_PRESET};
 
 /// The shipped card on a board.
 fn card_on(board: &Board) -> Project {
@@ -79,7 +79,7 @@ fn constraints_place_every_port_on_its_pin_and_nothing_else() {
         let project = card_on(&board);
         let end = board.family.constraints.as_str();
         let file = format!("{}.{end}", project.name);
-        let files = endat_gen::emit(&project).unwrap();
+        let files = endat_emit::emit(&project).unwrap();
         let file = files.iter().find(|f| f.path == file).unwrap();
         for pin in &project.pins {
             let wanted = statement(end, &pin.signal, &pin.pin);

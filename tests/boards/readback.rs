@@ -4,7 +4,7 @@ use super::bitstream::small_card;
 use super::files::own_family;
 use crate::program::{bad, good, program, Dir};
 use crate::tools;
-use endat_gen::bitstream::CYCLES;
+use endat_tools::bitstream::CYCLES;
 use serde_json::Value;
 use std::fs;
 

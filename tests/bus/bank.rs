@@ -2,7 +2,7 @@
 
 use crate::bus_card::text;
 use crate::stream_rig::Named;
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::register_bank::{ring_bytes, RegisterBank};
 use endat_sim::rng::Rng;

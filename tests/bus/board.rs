@@ -2,7 +2,7 @@
 
 use crate::bus_card::text;
 use crate::constraints::{judge, lint_top, play};
-use endat_gen::config::{parse, Project};
+use endat_config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::ID;
 
@@ -46,7 +46,7 @@ fn the_top_of_every_card_on_a_board_is_clean() {
 #[test]
 fn the_emission_says_what_it_has() {
     for bus in [HostBus::Spi, HostBus::Parallel] {
-        let files = endat_gen::emit(&project(bus, "")).unwrap();
+        let files = endat_emit::emit(&project(bus, "")).unwrap();
         let readme = &files.iter().find(|f| f.path == "README.md").unwrap().text;
         let listed: Vec<&str> = (readme.lines())
             .filter_map(|l| l.strip_prefix("| `")?.split_once("` |"))

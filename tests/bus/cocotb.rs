@@ -2,7 +2,7 @@
 
 use crate::bus_card::{text, WORD_BUSES};
 use crate::tools;
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::card::bus::HostBus;
 use std::path::Path;
 
@@ -23,7 +23,7 @@ fn masters_of_cocotb(buses: &[HostBus]) {
             continue;
         }
         let project = parse("card.toml", &text(bus, "")).unwrap();
-        let files = endat_gen::emit(&project).unwrap();
+        let files = endat_emit::emit(&project).unwrap();
         let folder = tools::folder(&format!("cocotb-{name}"));
         for file in files {
             std::fs::write(folder.join(&file.path), &file.text).unwrap();

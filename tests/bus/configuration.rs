@@ -1,14 +1,14 @@
 //! `host.bus` in a configuration: what is emitted, and what is refused.
 
 use crate::bus_card::{text, WORD_BUSES};
-use endat_gen::config::{load_preset, parse, preset, DEFAULT_PRESET};
+use endat_config::{load_preset, parse, preset, DEFAULT_PRESET};
 use endat_hdl::card::bus::HostBus;
 
 #[test]
 fn a_card_with_a_bus_has_a_test_bench_and_no_board_top() {
     for bus in WORD_BUSES {
         let project = parse("card.toml", &text(bus, "")).unwrap();
-        let files = endat_gen::emit(&project).unwrap();
+        let files = endat_emit::emit(&project).unwrap();
         let has = |end: &str| files.iter().any(|f| f.path.ends_with(end));
         assert!(has("_card.v") && has("_registers.h") && has(".svd") && has("README.md"));
         assert!(!has("_top.v") && !has(".ucf") && has("_tb.v"), "{bus:?}");
@@ -25,10 +25,8 @@ fn a_card_with_a_bus_has_a_test_bench_and_no_board_top() {
 fn uart_is_what_a_card_has_if_nothing_is_asked() {
     let preset = load_preset(DEFAULT_PRESET).unwrap();
     assert_eq!(preset.bus, HostBus::Uart);
-    let asked = endat_gen::config::preset(DEFAULT_PRESET)
-        .unwrap()
-        .to_owned()
-        + "\n[host]\nbus = \"uart\"\n";
+    let asked =
+        endat_config::preset(DEFAULT_PRESET).unwrap().to_owned() + "\n[host]\nbus = \"uart\"\n";
     assert_eq!(parse("card.toml", &asked).unwrap().hash, preset.hash);
 }
 
@@ -39,7 +37,7 @@ fn a_card_with_a_uart_comes_without_a_board_too() {
     let without = with.split("\n[board]").next().unwrap();
     let card = parse("card.toml", without).unwrap();
     assert!(card.board.is_none() && card.pins.is_empty());
-    let files = endat_gen::emit(&card).unwrap();
+    let files = endat_emit::emit(&card).unwrap();
     let has = |end: &str| files.iter().any(|file| file.path.ends_with(end));
     assert!(has("_tb.v") && has("_example.c") && has(".sdc"));
     assert!(!has("_top.v") && !has(".ucf") && !has("_build.tcl"));
@@ -57,8 +55,8 @@ fn a_card_with_a_uart_comes_without_a_board_too() {
         "{found:?}"
     );
     // `--board` holds it, too.
-    let board = endat_gen::board::Board::named("papilio_pro").unwrap();
-    let held = endat_gen::config::parse_on("card.toml", without, Some(&board)).unwrap();
+    let board = endat_config::board::Board::named("papilio_pro").unwrap();
+    let held = endat_config::parse_on("card.toml", without, Some(&board)).unwrap();
     assert!(held.board.is_some() && !held.pins.is_empty());
 }
 
@@ -132,7 +130,7 @@ fn bare(more: &str) -> String {
 #[test]
 fn without_a_bus_one_port_is_emitted_and_no_registers() {
     let project = parse("port.toml", &bare("")).unwrap();
-    let files = endat_gen::emit(&project).unwrap();
+    let files = endat_emit::emit(&project).unwrap();
     let has = |end: &str| files.iter().any(|f| f.path.ends_with(end));
     assert!(has("none_card.v") && has("_instance.vh") && has(".core") && has("README.md"));
     assert!(!has("_registers.h") && !has(".svd") && !has("register_bank.v") && !has("_top.v"));

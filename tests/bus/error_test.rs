@@ -1,7 +1,7 @@
 //! Forced errors on the card's own schedule: each is told, positions do not suffer, and a dead error path is found.
 
 use super::{at, frame, sound, text, Master};
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::service::map::{control, force, state};
 use endat_hdl::endat::transaction::cause;

@@ -16,7 +16,7 @@ mod uart;
 
 use crate::bus_card::{text, WORD_BUSES};
 use crate::made;
-use endat_gen::config::{parse, Project};
+use endat_config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CardConfig;
 use endat_hdl::regs::{Block, CARD};

@@ -3,7 +3,7 @@
 use super::{sound, text, Master};
 use crate::stream_rig::Named;
 use crate::three_way::{three_way, Stimulus};
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::direct::{DirectOutput, CROP_CYCLES};
 use endat_hdl::card::interrupt::Interrupt;
@@ -288,12 +288,7 @@ fn outputs_are_refused_where_nothing_could_take_them() {
         ),
     ] {
         let text = match bus {
-            HostBus::Uart => {
-                endat_gen::config::preset("s6_two_channel")
-                    .unwrap()
-                    .to_owned()
-                    + OUTPUTS
-            }
+            HostBus::Uart => endat_config::preset("s6_two_channel").unwrap().to_owned() + OUTPUTS,
             _ => text(bus, OUTPUTS).replacen(
                 "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n",
                 "",

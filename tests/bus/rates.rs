@@ -1,7 +1,7 @@
 //! A driver that changes the rate of the clock while the card is running, over the bus.
 
 use super::Master;
-use endat_gen::config::load_preset;
+use endat_config::load_preset;
 use endat_hdl::endat::channel::CALIBRATION_FRAMES;
 use endat_hdl::regs::{Block, CARD, CHANNEL_CONFIG, RESULT};
 use endat_sim::US;

@@ -2,7 +2,7 @@
 
 use super::{at, frame, sound, text, Master, WORD_BUSES};
 use crate::three_way::{three_way, Stimulus};
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::recovery_counter::RecoveryCounter;
 use endat_hdl::regs::{COUNTER_SPACING, RECOVERY, RESULT};

@@ -4,7 +4,7 @@ use super::spi::crc16;
 use super::{at, frame, sound, text, Master, WORD_BUSES};
 use crate::three_way::{three_way, Stimulus};
 use crate::tools::{self, require};
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::second_interface::record::SecondRecord;
 use endat_hdl::card::second_interface::SecondInterface;

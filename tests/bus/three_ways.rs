@@ -3,7 +3,7 @@
 use crate::bus_card::text;
 use crate::made;
 use crate::three_way::{agree, record, three_way, Recording, Stimulus};
-use endat_gen::config::{parse, Project};
+use endat_config::{parse, Project};
 use endat_hdl::card::bus::{
     ahb_lite::AhbLiteCard, apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard,
     spi::SpiCard, wishbone::WishboneCard, HostBus,
@@ -283,7 +283,7 @@ fn native_code_agrees(bus: HostBus, cycles: usize, least: usize) {
 /// All executions agree on a bus's card in so many cycles.
 fn executions_agree(bus: HostBus, cycles: usize, least: usize) {
     let project = parse("card.toml", &text(bus, more(bus))).unwrap();
-    let design = endat_gen::design(&project).unwrap();
+    let design = endat_emit::design(&project).unwrap();
     let mut kernel = kernels(&project);
     let stimulus = stimulus(bus, kernel.as_ref(), cycles);
     let name = format!("{}_card", bus.name());

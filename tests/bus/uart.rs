@@ -2,7 +2,7 @@
 
 use crate::bus_card::text;
 use crate::made;
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::service_times;
 use endat_hdl::card::uart::BIT_CYCLES_MIN;

@@ -2,7 +2,7 @@
 
 use super::run;
 use crate::tools;
-use endat_gen::config::parse_any;
+use endat_config::parse_any;
 
 fn has_tools() -> bool {
     let check = "campaign over configurations";
@@ -70,7 +70,7 @@ fn one_configuration_is_shown_alone() {
         (["--case", "14"], "--case = 14: outside 0..13"),
         (
             ["--subject", "port"],
-            "campaign configurations: --subject: is only of upsets, faults, garbage, mutants; leave it out",
+            "campaign configurations: --subject: is only of upsets, faults, garbage; leave it out",
         ),
     ] {
         let outcome = run(&[&["campaign", "configurations", "--quick"], &arguments[..]].concat());

@@ -6,15 +6,13 @@ mod mutants;
 mod results;
 mod schedulers;
 
-use endat_gen::cli;
 use endat_sim::campaign;
 use endat_sim::encoder::Defect;
 use rtl_design::engine::Compiled;
 use serde_json::Value;
 
-fn run(arguments: &[&str]) -> cli::Outcome {
-    let program = std::iter::once("endat-gen");
-    cli::run(program.chain(arguments.iter().copied()))
+fn run(arguments: &[&str]) -> endat_terminal::outcome::Outcome {
+    crate::program::run(arguments)
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use super::run;
 use crate::tools;
-use endat_gen::campaign::mutants::{subjects, Emission, Mutants};
 use endat_sim::campaign::{run_shard, Shard, Tally};
+use endat_workshop::mutants::{subjects, Emission, Mutants};
 use std::path::Path;
 
 const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/campaigns/results");
@@ -92,12 +92,9 @@ fn bad_arguments_are_refused_before_anything_is_built() {
             "--subject = x: is no subject of this campaign; take one of s6_two",
         ),
         (["--cases", "0"], "--cases = 0: outside 1..1000"),
-        (
-            ["--moments", "3"],
-            "--moments: is only of upsets; leave it out",
-        ),
+        (["--moments", "3"], "unexpected argument '--moments'"),
     ] {
-        let outcome = run(&[&["campaign", "mutants"][..], &arguments].concat());
+        let outcome = run(&[&["mutants"][..], &arguments].concat());
         assert_eq!(outcome.exit_code, 2, "{arguments:?}");
         let told = outcome.messages.iter().any(|m| m.contains(text));
         assert!(told, "{outcome:?}");
@@ -108,7 +105,7 @@ fn bad_arguments_are_refused_before_anything_is_built() {
 fn the_page_of_mutants_is_what_the_results_say() {
     let files = subjects().map(|card| format!("{RESULTS}/mutants_{card}.csv"));
     let files: Vec<String> = files.collect();
-    let mut arguments = vec!["campaign", "page"];
+    let mut arguments = vec!["page"];
     arguments.extend(files.iter().map(String::as_str));
     let outcome = run(&arguments);
     assert_eq!(outcome.exit_code, 0, "{outcome:?}");

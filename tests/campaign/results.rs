@@ -2,7 +2,7 @@
 
 use super::run;
 use crate::tools;
-use endat_gen::campaign::part::Part;
+use endat_campaign::part::Part;
 use std::collections::BTreeMap;
 
 const PAGE: &str = include_str!("../../docs/campaigns.md");
@@ -23,8 +23,8 @@ fn duckdb_and_pandas_count_what_the_campaign_counted() {
     }
     let folder = tools::folder("campaign_results");
     let out = folder.join("upsets.csv");
-    // With fewer cases no upset is silent, and the page's question has no answer.
-    let words = "campaign upsets --subject port --cases 12000";
+    // Elsewhere an upset is seldom silent, and the page's question has no answer.
+    let words = "campaign upsets --subject port --only clk_pin,clock_gen. --moments 30";
     let campaign: Vec<&str> = words.split(' ').collect();
     let outcome = run(&[&campaign[..], &["--out", out.to_str().unwrap()]].concat());
     assert_eq!(outcome.exit_code, 0, "{outcome:?}");
@@ -39,7 +39,7 @@ fn duckdb_and_pandas_count_what_the_campaign_counted() {
             *kinds.entry(row.kind.clone()).or_default() += count;
         }
     }
-    assert!(!silent.is_empty() && !kinds.is_empty(), "{outcome:?}");
+    assert!(silent.len() > 1 && kinds.len() > 1, "{outcome:?}");
     let shell = |line: &str| {
         let (is_good, told) = tools::run("bash", &folder, &["-c", line]);
         assert!(is_good, "{line}: {told}");

@@ -5,13 +5,13 @@ use super::world::World;
 use super::{everything, OTHER_BUSES};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
+use endat_config::parse;
 use endat_driver::regs::Protocol;
 use endat_driver::regs::{self, causes::endat, service::request_state};
 use endat_driver::{
     difference, signed, Card, Error, Link, ModeCommand, Moment, NamePlate, Parallel, Part, Sources,
     Spi, Uart,
 };
-use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_sim::encoder::Defect;
 use std::convert::Infallible;

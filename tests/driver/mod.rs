@@ -9,7 +9,7 @@ mod world;
 
 use crate::program::{self, bad, begun, good, Dir};
 use crate::tools;
-use endat_gen::config::{parse, Project};
+use endat_config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_sim::encoder::Defect;
 use rig::{Rig, ALL_PARTS};
@@ -24,7 +24,7 @@ fn home() -> PathBuf {
 /// Catches a register, cause or step that has changed while the driver has the old one.
 #[test]
 fn the_driver_has_the_map_and_the_texts_of_the_tables() {
-    for file in endat_gen::maps::driver::artifacts() {
+    for file in endat_emit::maps::driver::artifacts() {
         let path = home().join(&file.path);
         tools::assert_committed(&path, &file.text);
     }
@@ -102,7 +102,7 @@ const STRICT: [&str; 8] = [
 
 /// The driver's files that are compiled.
 fn sources() -> Vec<String> {
-    let names = endat_gen::driver::FILES.iter().map(|file| file.0);
+    let names = endat_emit::driver::FILES.iter().map(|file| file.0);
     let sources = names.filter(|name| name.ends_with(".c"));
     sources
         .map(|name| home().join(name).display().to_string())
@@ -165,7 +165,7 @@ fn card_of_the_page() -> Project {
 }
 
 fn write_header(folder: &Path) {
-    let maps = endat_gen::maps::artifacts(&card_of_the_page()).unwrap();
+    let maps = endat_emit::maps::artifacts(&card_of_the_page()).unwrap();
     let header = maps
         .iter()
         .find(|file| file.path.ends_with("_registers.h"))
@@ -249,7 +249,7 @@ fn on_a_simulated_card(program: &str, folder: &Path) {
         "--tcp",
         "127.0.0.1:0",
     ];
-    let (mut card, name) = begun(program::program().args(arguments));
+    let (mut card, name) = begun(program::endat().args(arguments));
     let port = name.trim().rsplit(':').next().unwrap();
     let (is_good, text) = tools::run(program, folder, &["tcp", "127.0.0.1", port]);
     card.kill().unwrap();
@@ -283,7 +283,7 @@ fn the_emitted_cards_are_driven_in_verilator() {
     let more = "[service]\nparts = [\"requests\", \"diagnosis\"]\n";
     let projects = [HostBus::AxiLite, HostBus::Spi]
         .map(|bus| parse("card.toml", &rig::text(bus, more)).unwrap());
-    let emitted = projects.each_ref().map(|p| endat_gen::emit(p).unwrap());
+    let emitted = projects.each_ref().map(|p| endat_emit::emit(p).unwrap());
     let emitted = emitted.concat();
     let folder = tools::folder("driver-emitted");
     let mut files = vec![];
@@ -454,17 +454,18 @@ fn emit_hands_the_driver_out_with_a_card() {
         "s6_two_channel",
         "--out",
         &out,
-        "--driver",
+        "--with",
+        "driver",
     ];
     good(&with);
     let folder = dir.0.join("o/s6_two_channel");
-    for (name, text) in endat_gen::driver::FILES {
+    for (name, text) in endat_emit::driver::FILES {
         assert_eq!(std::fs::read_to_string(folder.join(name)).unwrap(), *text);
     }
     let manifest = std::fs::read_to_string(folder.join("MANIFEST")).unwrap();
     assert_eq!(manifest.matches("  endat.h\n").count(), 1);
     let readme = std::fs::read_to_string(folder.join("README.md")).unwrap();
-    assert_eq!(readme.matches(endat_gen::driver::ROW).count(), 1);
+    assert_eq!(readme.matches(endat_emit::driver::ROW).count(), 1);
     good(&[&with[..], &["--check"]].concat());
     let told = bad(
         &with[..5]
@@ -478,12 +479,23 @@ fn emit_hands_the_driver_out_with_a_card() {
     std::fs::remove_file(folder.join("endat.c")).unwrap();
     let told = bad(&[&with[..], &["--check"]].concat(), 1);
     assert!(
-        told.contains("endat.c: is missing") && told.contains(" --driver"),
+        told.contains("endat.c: is missing") && told.contains(" --with driver"),
         "{told}"
     );
     let told = bad(
-        &["emit", "--preset", "async_dsp", "--out", &out, "--driver"],
+        &[
+            "emit",
+            "--preset",
+            "async_dsp",
+            "--out",
+            &out,
+            "--with",
+            "driver",
+        ],
         2,
     );
-    assert!(told.contains("--driver"), "{told}");
+    assert!(
+        told.starts_with("with = \"driver\": async_dsp has no such file"),
+        "{told}"
+    );
 }

@@ -4,8 +4,8 @@
 use super::compiled;
 use crate::bus::{parallel, spi, Master};
 use crate::made;
-use endat_gen::config::{parse, Project};
-use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
+use endat_card::{VirtualCard, VirtualConfig};
+use endat_config::{parse, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::service_times;
 use endat_hdl::endat::service::program::ServiceTimes;

@@ -4,8 +4,8 @@ use super::rig::Rig;
 use super::world::World;
 use super::{home, sources};
 use crate::tools;
+use endat_config::{parse, preset};
 use endat_driver::{Card, Error, Range, Uart};
-use endat_gen::config::{parse, preset};
 use endat_regs::Protocol;
 
 #[test]

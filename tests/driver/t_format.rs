@@ -2,12 +2,12 @@
 
 use super::rig::Rig;
 use super::world::World;
+use endat_config::{parse, preset, Project};
 use endat_driver::regs::causes;
 use endat_driver::regs::protocols::t_format::causes as cause;
 use endat_driver::regs::protocols::t_format::request;
 use endat_driver::regs::Protocol;
 use endat_driver::{Card, Error, TFormatSettings, Uart};
-use endat_gen::config::{parse, preset, Project};
 
 /// Channels of the card.
 const ENDAT: usize = 0;

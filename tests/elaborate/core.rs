@@ -2,7 +2,7 @@
 
 use crate::stimulus::random_stimulus;
 use crate::three_way::{three_way, Stimulus};
-use endat_gen::config::load_preset;
+use endat_config::load_preset;
 use endat_hdl::card::Card;
 use endat_hdl::endat::channel::{Channel, Features, FixedTimes};
 use endat_hdl::endat::sequencer::{Sequencer, PROGRAM_WORDS};
@@ -158,7 +158,7 @@ fn the_card_agrees() {
     let mut block = Card::new(&project.card);
     block.connect_all();
     let design = elaborate(&block, &project.name).unwrap();
-    let mut kernel = endat_gen::bench::card_kernels(block);
+    let mut kernel = endat_workshop::bench::card_kernels(block);
     let lines = [
         ("trigger_i", 300),
         ("uart_rx_i", 100),

@@ -5,9 +5,8 @@ mod clean;
 
 use super::core::random_program;
 use clean::{elaborated, simulators_are_content, write, yosys_is_content};
-use endat_gen::area;
-use endat_gen::artifact::Artifact;
-use endat_gen::config::load_preset;
+use endat_config::load_preset;
+use endat_console::artifact::Artifact;
 use endat_hdl::card::bus::{
     ahb_lite::AhbLiteCard, apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard,
     spi::SpiCard, wishbone::WishboneCard,
@@ -17,6 +16,7 @@ use endat_hdl::config::OutputParts;
 use endat_hdl::endat::channel::{Channel, FixedTimes};
 use endat_hdl::endat::sequencer::Sequencer;
 use endat_hdl::protocols::t_format::dsp::{AsyncDsp, TFormatStart};
+use endat_tools::area;
 use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 use std::fs;

@@ -1,7 +1,7 @@
 //! What a trimmed design leaves out makes no difference: whole and trimmed design side by side.
 
 use crate::strangers::configurations::texts;
-use endat_gen::config::{parse_any, Configuration};
+use endat_config::{parse_any, Configuration};
 use endat_sim::rng::Rng;
 use rtl_design::elaborate::{Design, Module};
 use rtl_design::engine::{Compiled, Engine};
@@ -59,9 +59,9 @@ fn difference(whole: &Design, trimmed: &Design, seed: u64) -> Option<String> {
 
 fn design(configuration: &Configuration) -> Design {
     match configuration {
-        Configuration::Card(project) => endat_gen::design(project).unwrap(),
+        Configuration::Card(project) => endat_emit::design(project).unwrap(),
         Configuration::Receiver(receiver) => {
-            endat_gen::protocols::t_format::design(receiver).unwrap()
+            endat_emit::protocols::t_format::design(receiver).unwrap()
         }
     }
 }

@@ -4,9 +4,8 @@ use super::{card_of, changed, slow_card, Served, QUICKER};
 #[cfg(unix)]
 use crate::program;
 use crate::tools;
-use endat_gen::cli;
-use endat_gen::config::Project;
-use endat_gen::virtual_card::{Door, VirtualCard};
+use endat_card::{Door, VirtualCard};
+use endat_config::Project;
 use endat_host::feed::Feed;
 use endat_host::transport::LinkState;
 #[cfg(unix)]
@@ -29,7 +28,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 struct Log {
     out: PathBuf,
     svg: PathBuf,
-    thread: JoinHandle<cli::Outcome>,
+    thread: JoinHandle<endat_terminal::outcome::Outcome>,
 }
 
 impl Log {
@@ -37,7 +36,7 @@ impl Log {
         let folder = tools::folder(folder);
         let (out, svg) = (folder.join("rows.csv"), folder.join("rows.svg"));
         let text = |path: &Path| path.to_str().unwrap().to_owned();
-        let mut words: Vec<String> = ["endat-gen", "log", "--force", "--port", port]
+        let mut words: Vec<String> = ["endat", "log", "--force", "--port", port]
             .map(Into::into)
             .into();
         words.extend(["--out".into(), text(&out), "--svg".into(), text(&svg)]);
@@ -46,7 +45,7 @@ impl Log {
         Self {
             out,
             svg,
-            thread: thread::spawn(move || cli::run(words)),
+            thread: thread::spawn(move || endat::run(words)),
         }
     }
 
@@ -60,7 +59,7 @@ impl Log {
     }
 
     /// What it has told, and the columns `trigger`, `time_s` and `missing` of its rows.
-    fn end(self) -> (cli::Outcome, Vec<(u64, f64, u64)>) {
+    fn end(self) -> (endat_terminal::outcome::Outcome, Vec<(u64, f64, u64)>) {
         let begin = Instant::now();
         while !self.thread.is_finished() {
             let out = self.out.display();
@@ -122,7 +121,7 @@ struct Asleep(std::process::Child);
 #[cfg(unix)]
 impl Asleep {
     fn begun() -> (Self, Port) {
-        let mut command = program::program();
+        let mut command = program::endat();
         command.args(["card", "--preset", "s6_two_channel", "--load"]);
         let (process, name) = program::begun(command.args(["--tcp", "127.0.0.1:0"]));
         let link = Port::open(name.trim(), 3_000_000).unwrap();
@@ -459,7 +458,7 @@ fn a_restart_is_seen_by_more_than_its_count() {
     *inside.borrow_mut() = begun_anew;
     let told = fill().unwrap_err().to_string();
     assert!(
-        told.contains("what was left in card_config.hold.scratch is gone"),
+        told.contains("the mark in card_config.hold.scratch is gone"),
         "{told}"
     );
 }

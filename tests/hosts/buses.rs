@@ -1,8 +1,8 @@
 //! The virtual card of every bus: the host's words go over the pins of that bus, and everything that the host can do is done.
 
 use super::{card_of, found, SERVICE};
-use endat_gen::config::{parse, parse_any, preset, Configuration, Project};
-use endat_gen::virtual_card::{card_at, Door, VirtualCard, VirtualConfig};
+use endat_card::{card_at, Door, VirtualCard, VirtualConfig};
+use endat_config::{parse, parse_any, preset, Configuration, Project};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::ID;
 use endat_host::feed::Feed;

@@ -1,8 +1,9 @@
 //! Programs that nobody here wrote, at a virtual card.
 
 use super::ports::{slow_card, Served};
+use crate::program::endat_path;
 use crate::tools;
-use endat_gen::virtual_card::Door;
+use endat_card::Door;
 use std::process::Command;
 
 /// `pandablocks hdf` records a card's stream, and the client library finds its blocks.
@@ -13,15 +14,16 @@ fn pandablocks_finds_and_records_the_card() {
         return;
     }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/panda_client.py");
+    let endat = endat_path();
     let folder = tools::folder("panda");
     let has_ioc = tools::require_python("pandablocks_ioc", "EPICS driver at the virtual card");
     let more = has_ioc.then_some("ioc");
     let output = Command::new("python3")
         .args([
             script,
-            env!("CARGO_BIN_EXE_endat-gen"),
+            endat.to_str().unwrap(),
             folder.to_str().unwrap(),
-            super::quick_service_port(),
+            super::quicker_service_port(),
         ])
         .args(more)
         .output()
@@ -43,7 +45,7 @@ fn litex_reads_and_writes_the_card_over_a_pseudo_terminal() {
     }
     let project = slow_card();
     let csv = tools::folder("litex_csr").join("csr.csv");
-    let maps = endat_gen::maps::artifacts(&project).unwrap();
+    let maps = endat_emit::maps::artifacts(&project).unwrap();
     let map = maps.iter().find(|m| m.path.ends_with("_csr.csv")).unwrap();
     std::fs::write(&csv, &map.text).unwrap();
     let card = Served::new(project, || Door::terminal().unwrap());

@@ -1,14 +1,13 @@
 //! The commands of the program, at a card in the same process.
 
 use crate::tools;
-use endat_gen::cli;
 use std::fs;
 
-fn run(arguments: &[&str]) -> cli::Outcome {
-    cli::run(std::iter::once("endat-gen").chain(arguments.iter().copied()))
+fn run(arguments: &[&str]) -> endat_terminal::outcome::Outcome {
+    crate::program::run(arguments)
 }
 
-fn json(outcome: &cli::Outcome) -> serde_json::Value {
+fn json(outcome: &endat_terminal::outcome::Outcome) -> serde_json::Value {
     serde_json::from_str(&outcome.stdout).unwrap()
 }
 
@@ -18,7 +17,7 @@ fn service() -> [&'static str; 2] {
     ["--port", super::quicker_service_port()]
 }
 
-fn with<'a>(command: &[&'a str], port: [&'a str; 2]) -> cli::Outcome {
+fn with<'a>(command: &[&'a str], port: [&'a str; 2]) -> endat_terminal::outcome::Outcome {
     run(&[command, &port].concat())
 }
 
@@ -354,7 +353,7 @@ fn csv_rows(text: &str) -> Vec<Vec<String>> {
 fn margin_is_what_the_card_has_measured() {
     let folder = tools::folder("host_margin");
     let toml = folder.join("margin.toml");
-    let text = endat_gen::config::preset("s6_two_channel").unwrap();
+    let text = endat_config::preset("s6_two_channel").unwrap();
     let parts = "parts = []                      # (default: none)\n# with";
     assert!(text.contains(parts));
     let text = text.replace(parts, "parts = [\"alignment\", \"margin\"]\n# with");
@@ -470,7 +469,7 @@ fn every_name_of_the_map_is_explained() {
 #[test]
 fn a_log_without_triggers_is_refused() {
     let folder = tools::folder("log-without-triggers");
-    let text = endat_gen::config::preset("s6_two_channel").unwrap();
+    let text = endat_config::preset("s6_two_channel").unwrap();
     let line = text.lines().find(|l| l.starts_with("sources = ")).unwrap();
     let file = folder.join("silent.toml");
     fs::write(&file, text.replacen(line, "sources = []", 1)).unwrap();

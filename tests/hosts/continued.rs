@@ -1,9 +1,9 @@
 //! Recordings that go on behind others, and what is told instead of guessed.
 
 use super::{slow_card, Served};
-use crate::program::{bad, good, program, run, Dir};
-use endat_gen::cli::Outcome;
-use endat_gen::virtual_card::Door;
+use crate::program::{bad, endat, good, run, Dir};
+use endat_card::Door;
+use endat_terminal::outcome::Outcome;
 use serde_json::Value;
 use std::fs;
 use std::time::{Duration, Instant};
@@ -96,7 +96,7 @@ fn text_that_was_gone_on_with_has_figures_and_a_drawing() {
         let turned = run(&["stats", "--json", all[1], all[0]]);
         assert_eq!(turned.exit_code, 0, "{turned:?}");
         assert_eq!(turned, run(&["stats", "--json", all[0], all[1]]));
-        let program = program()
+        let program = endat()
             .args([
                 "log",
                 "--port",
@@ -134,7 +134,7 @@ fn an_unknown_suffix_is_refused_and_a_new_folder_is_told() {
             "--out",
             &out,
         ];
-        let output = program().args(log).output().unwrap();
+        let output = endat().args(log).output().unwrap();
         let told = String::from_utf8(output.stderr).unwrap();
         let says = told.contains("--out: the folder ") && told.contains("has been made");
         assert_eq!((output.status.code(), says), (Some(0), is_told), "{told}");
@@ -210,7 +210,7 @@ fn a_card_that_somebody_else_has_is_waited_for_and_that_is_told() {
     let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
     let dir = Dir::new("taken");
     let first = dir.path("first.csv");
-    let mut other = program()
+    let mut other = endat()
         .args(["log", "--port", &card.name, "--out", &first])
         .spawn()
         .unwrap();
@@ -222,7 +222,7 @@ fn a_card_that_somebody_else_has_is_waited_for_and_that_is_told() {
         std::thread::sleep(Duration::from_millis(50));
     }
     let log = ["log", "--samples", "1", "--port", &card.name];
-    let output = program().args(log).output().unwrap();
+    let output = endat().args(log).output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.contains("waiting for the card at tcp:"), "{told}");
     assert_eq!(output.status.code(), Some(1), "{told}");
@@ -260,7 +260,7 @@ fn what_is_data_is_there_as_json() {
     let monitor = [
         "monitor", "--json", "--count", "2", "--every", "0", "--port", "virtual",
     ];
-    let output = program().args(monitor).output().unwrap();
+    let output = endat().args(monitor).output().unwrap();
     let looks = String::from_utf8(output.stdout).unwrap();
     let looks: Vec<Value> = looks
         .lines()

@@ -1,8 +1,8 @@
 //! Programs that serve others, beside clients that never read, that flood, that say nothing, and that come in crowds.
 
 use super::{slow_card, Served};
-use crate::program::{bad, good, program, run, Dir};
-use endat_gen::virtual_card::Door;
+use crate::program::{bad, endat, good, run, Dir};
+use endat_card::Door;
 use std::fs;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -25,7 +25,7 @@ struct Program {
 
 impl Program {
     fn new(arguments: &[&str], lines: usize) -> Self {
-        let mut command = program();
+        let mut command = endat();
         let command = command.args(arguments);
         let mut process = command
             .stdout(Stdio::piped())
@@ -346,7 +346,7 @@ fn a_second_program_is_told_that_the_card_is_in_use() {
     let begin = format!("{}: in use by another connection for ", card.name);
     assert!(told.starts_with(&begin), "{told}");
     assert!(
-        told.ends_with(" s; end the program that has it, or try again when it has ended"),
+        told.ends_with(" s; end the program that uses it, or try again later"),
         "{told}"
     );
     // Any other program can read it, too.

@@ -1,6 +1,6 @@
 //! Recordings as text that were changed, cut and saved by others: what the figures say of them.
 
-use crate::program::{bad, good, run, Dir};
+use crate::program::{bad, endat_path, good, run, Dir};
 use serde_json::Value;
 use std::fs;
 
@@ -183,7 +183,7 @@ fn a_limit_of_the_shell_ends_a_log_with_a_message_and_a_whole_file() {
         let rows = if form == "csv" { "3000" } else { "600000" };
         let command = format!(
             "ulimit -f 100; exec '{}' log --port load --samples {rows} --out '{out}'",
-            env!("CARGO_BIN_EXE_endat-gen")
+            endat_path().display()
         );
         let output = std::process::Command::new("bash")
             .args(["-c", &command])

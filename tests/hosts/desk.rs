@@ -1,7 +1,7 @@
 //! A host at a virtual card: registers by name, requests, and time that passes.
 
-use endat_gen::config::Project;
-use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
+use endat_card::{VirtualCard, VirtualConfig};
+use endat_config::Project;
 use endat_host::mailbox::Request;
 use endat_host::{Bridge, Card};
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! A link that loses, adds and changes bytes, and one that is unplugged.
 
 use super::{card_of, found, quick, SERVICE};
-use endat_gen::virtual_card::VirtualCard;
+use endat_card::VirtualCard;
 use endat_host::registers::Place;
 use endat_host::{Bridge, Card, HostError, Transport};
 use std::io;

@@ -1,8 +1,8 @@
 //! A card with few system clocks to a bit: positions from two on, additional data, requests and initialisation from four on.
 
 use super::desk::Desk;
-use endat_gen::config::{parse, Project};
-use endat_gen::virtual_card::VirtualConfig;
+use endat_card::VirtualConfig;
+use endat_config::{parse, Project};
 use endat_hdl::endat::transaction::cause;
 
 /// All of the service but the continuous clock.
@@ -161,7 +161,7 @@ fn fewer_clocks_are_refused_with_what_would_do() {
     for (system_hz, line_parts, service_parts, told) in [
         (32, "", "", format!("needs a system clock of at least 64000000 Hz, {least}, {alone}")),
         (16, DOUBLE_EDGE, "", "needs a system clock of at least 32000000 Hz, clock.system_hz is 16000000; use at most 8000000 Hz or a faster system clock".into()),
-        (32, DOUBLE_EDGE, SERVICE, "its period is 2 cycles of clock.system_hz = 32000000, additional data take 4; use at most 8000000 Hz, or leave \"requests\" out of service.parts".into()),
+        (32, DOUBLE_EDGE, SERVICE, "its period is 2 cycles of clock.system_hz = 32000000, additional data need 4; use at most 8000000 Hz, or leave \"requests\" out of service.parts".into()),
         (48, DOUBLE_EDGE, "", "its period of 3 cycles of clock.system_hz = 48000000 has pulses of 1 and 2 cycles, encoders allow 10 % of the period more or less than half of it; use a system clock of 32000000 or 64000000 Hz".into()),
     ] {
         let told = format!("endat.clock_hz = 16000000: {told}");

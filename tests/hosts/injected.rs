@@ -3,12 +3,12 @@
 use super::{card_of, slow_card, Served};
 use crate::program::{bad, good};
 use crate::tools;
-use endat_gen::recording::count::Judge;
-use endat_gen::recording::picture::{Counter, Extras, Picture};
-use endat_gen::virtual_card::Door;
+use endat_card::Door;
 use endat_host::feed::{Cell, Feed, Row};
 use endat_host::transport::Port;
 use endat_host::{Bridge, Card};
+use endat_recording::count::Judge;
+use endat_recording::picture::{Counter, Extras, Picture};
 use std::collections::VecDeque;
 use std::time::Duration;
 

@@ -1,8 +1,8 @@
 //! Replies of a real T-format encoder, from the wire of a virtual card to the host.
 
 use super::desk::Desk;
-use endat_gen::config::parse;
-use endat_gen::virtual_card::VirtualConfig;
+use endat_card::VirtualConfig;
+use endat_config::parse;
 use endat_sim::t_format::EncoderConfig;
 use std::sync::Arc;
 

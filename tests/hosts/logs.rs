@@ -2,13 +2,12 @@
 
 use super::{changed_text, quick_text, slow_card, Served, QUICKER};
 use crate::tools;
-use endat_gen::cli;
-use endat_gen::virtual_card::Door;
+use endat_card::Door;
 use std::fs;
 use std::path::PathBuf;
 
-fn run(arguments: &[&str]) -> cli::Outcome {
-    cli::run(std::iter::once("endat-gen").chain(arguments.iter().copied()))
+fn run(arguments: &[&str]) -> endat_terminal::outcome::Outcome {
+    crate::program::run(arguments)
 }
 
 /// A card whose channel 0 expects another width than its encoder has: every frame is bad.
@@ -263,7 +262,7 @@ fn reg_write_keeps_to_the_limits_of_the_map_unless_forced() {
     assert_eq!(write("card.calibrate", "3", &[]).exit_code, 0);
     let foreign = run(&["reg", "read", "nosuch", "--port", "virtual"]);
     let told = &foreign.messages[0];
-    let begin = "register = \"nosuch\": there is no block \"nosuch\" (";
+    let begin = "register = \"nosuch\": no block is called \"nosuch\" (";
     // The card has no services and no T-format channel.
     assert!(
         told.starts_with(begin) && told.contains("config0"),
@@ -308,20 +307,17 @@ fn reg_write_takes_names_of_a_words_bits() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_stdout_is_no_success() {
-    use std::process::{Command, Stdio};
+    use std::process::Stdio;
     let full = fs::File::options().write(true).open("/dev/full").unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_endat-gen"))
-        .arg("presets")
+    let output = crate::program::endat()
+        .args(["explain", "crc"])
         .stdout(Stdio::from(full))
         .stderr(Stdio::piped())
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
     let told = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        told.starts_with("endat-gen: stdout: cannot write: "),
-        "{told}"
-    );
+    assert!(told.starts_with("endat: stdout: cannot write: "), "{told}");
 }
 
 /// Before anything is written: the plot would take the place of the rows.

@@ -23,8 +23,8 @@ mod ti_menu;
 
 pub use ports::{slow_card, Served};
 
-use endat_gen::config::{load_preset, parse, preset, Project};
-use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
+use endat_card::{VirtualCard, VirtualConfig};
+use endat_config::{load_preset, parse, preset, Project};
 use endat_host::{Bridge, Card};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;

@@ -16,7 +16,7 @@ from pandablocks.commands import Arm, Get, GetBlockInfo, GetFieldInfo, GetState,
 from pandablocks.responses import EndData, ReadyData, StartData
 
 SAMPLES = 100
-RATE_HZ = 5_000
+RATE_HZ = 2_500
 CHANNELS = 2
 
 

@@ -1,8 +1,8 @@
 //! Virtual cards behind ports: TCP and pseudo terminals, in threads of the test.
 
 use super::{changed, QUICKER};
-use endat_gen::config::Project;
-use endat_gen::virtual_card::{serve, Door, VirtualCard, VirtualConfig};
+use endat_card::{serve, Door, VirtualCard, VirtualConfig};
+use endat_config::Project;
 use endat_host::transport::Port;
 use endat_host::{Bridge, Card};
 use std::sync::atomic::{AtomicBool, Ordering};

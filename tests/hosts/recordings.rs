@@ -8,7 +8,7 @@ use std::fs;
 const SAMPLES: &str = "150";
 
 /// A log of the first sample sets of a card that makes the same ones each time.
-fn log(out: &str, more: &[&str]) -> endat_gen::cli::Outcome {
+fn log(out: &str, more: &[&str]) -> endat_terminal::outcome::Outcome {
     let log = ["log", "--port", "load", "--samples", SAMPLES, "--out", out];
     run(&[&log[..], more].concat())
 }

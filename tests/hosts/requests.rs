@@ -1,7 +1,7 @@
 //! Requests of the library: whole answers, and requests that wait.
 
 use super::{desk::Desk, quick, SERVICE};
-use endat_gen::virtual_card::VirtualConfig;
+use endat_card::VirtualConfig;
 use endat_host::mailbox::Request;
 
 fn desk() -> Desk {

@@ -1,7 +1,7 @@
 //! A host that is slower than the card: what is lost is lost as whole sets, and counted.
 
 use super::{card_of, found, quick, SERVICE};
-use endat_gen::virtual_card::{Door, VirtualCard};
+use endat_card::{Door, VirtualCard};
 use endat_host::feed::{Feed, Row};
 use endat_host::registers::Place;
 use endat_host::stream::Decoder;

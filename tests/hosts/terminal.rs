@@ -1,8 +1,8 @@
 //! The program at a terminal: the screen of `monitor`, the bar of `log`, colours.
 
 use super::{quicker_service_port, slow_card, Served};
-use crate::program::{program, signal, Dir};
-use endat_gen::virtual_card::Door;
+use crate::program::{endat, signal, Dir};
+use endat_card::Door;
 use serialport::{SerialPort, TTYPort};
 use std::fs::File;
 use std::io::{Read, Write};
@@ -39,7 +39,7 @@ impl Terminal {
             .status();
         assert!(size.unwrap().success());
         let end = || Stdio::from(File::options().read(true).write(true).open(&name).unwrap());
-        let mut command = program();
+        let mut command = endat();
         for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
             command.env_remove(name);
         }
@@ -183,8 +183,8 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
         "{seen:?}"
     );
     // The message behind it has its colour.
-    assert!(seen.contains("\x1b[1mendat-gen:\x1b[0m "), "{seen:?}");
-    let output = program().args(log).output().unwrap();
+    assert!(seen.contains("\x1b[1mendat:\x1b[0m "), "{seen:?}");
+    let output = endat().args(log).output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(!told.contains('\x1b') && !told.contains('['), "{told}");
     let is_line = |line: &str| line.starts_with("30 of 300 sample sets");
@@ -201,7 +201,7 @@ fn colour_is_for_terminals_and_for_those_who_want_it() {
     assert!(help(&[]));
     assert!(!help(&[("NO_COLOR", "1")]));
     let file = |name: &str, value: &str| {
-        let output = program().arg("--help").env(name, value).output().unwrap();
+        let output = endat().arg("--help").env(name, value).output().unwrap();
         output.stdout.contains(&0x1b)
     };
     assert!(!file("TERM", "xterm"));

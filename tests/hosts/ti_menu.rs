@@ -3,8 +3,8 @@
 
 use super::changed;
 use super::desk::Desk;
-use endat_gen::config::{load_preset, Project};
-use endat_gen::virtual_card::VirtualConfig;
+use endat_card::VirtualConfig;
+use endat_config::{load_preset, Project};
 use std::ops::RangeInclusive;
 
 struct Menu(Desk);

@@ -2,11 +2,11 @@
 
 use super::{cores, sources, written};
 use crate::tools::{require, require_python, run};
-use endat_gen::config::Project;
-use endat_gen::language::Language;
-use endat_gen::readers::{is_bench, LINTERS};
-use endat_gen::{emit, emit_in};
+use endat_config::Project;
+use endat_emit::language::Language;
+use endat_emit::{emit, emit_in};
 use endat_hdl::card::bus::HostBus;
+use endat_tools::readers::{is_bench, LINTERS};
 use std::collections::BTreeSet;
 use std::fs;
 
@@ -79,7 +79,7 @@ const AXI4_LITE: [&str; 19] = [
 /// What the script of a card tells Platform Designer: files and top, then a line for each port. And the top's module.
 fn component(bus: HostBus) -> (String, String) {
     let text = crate::bus_card::text(bus, "[outputs]\nparts = [\"interrupt\"]\n");
-    let project = endat_gen::config::parse("card.toml", &text).unwrap();
+    let project = endat_config::parse("card.toml", &text).unwrap();
     let folder = written(
         &emit(&project).unwrap(),
         &format!("platform-designer-{}", bus.name()),
@@ -159,7 +159,7 @@ fn module_ports(module: &str) -> BTreeSet<String> {
 #[test]
 fn the_wrapper_for_platform_designer_is_elaborated_and_clean() {
     let text = crate::bus_card::text(HostBus::AxiLite, "");
-    let project = endat_gen::config::parse("card.toml", &text).unwrap();
+    let project = endat_config::parse("card.toml", &text).unwrap();
     let check = "wrapper for Platform Designer";
     if !require("iverilog", check) || !require("verilator", check) || !require("ghdl", check) {
         return;

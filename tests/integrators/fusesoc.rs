@@ -3,9 +3,9 @@
 use super::{preset, written};
 use crate::bus_card::text;
 use crate::tools::{folder, require, require_all, run};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::parse;
-use endat_gen::emit;
+use endat_config::parse;
+use endat_console::artifact::Artifact;
+use endat_emit::emit;
 use endat_hdl::card::bus::HostBus;
 use std::fs;
 use std::path::Path;
@@ -85,8 +85,10 @@ module soc_tb;
 endmodule
 ";
 
-/// Catches a module that two cores have with different contents: Verilator takes one of them for both.
+/// Catches a module that two cores have with different contents: Verilator takes one of them for both. In `cargo test`,
+/// `modules_of_one_name_in_several_emissions_are_the_same` compares them.
 #[test]
+#[ignore = "slow: FuseSoC's lint and simulation of three cores in one design"]
 fn two_cards_and_a_receiver_share_a_design() {
     if !require_all(&["fusesoc", "verilator", "iverilog"], "cores in one design") {
         return;
@@ -143,6 +145,8 @@ fn a_failing_bench_fails_its_target() {
     let right = "if (got !== want)";
     assert_eq!(bench.matches(right).count(), 1);
     *bench = bench.replace(right, "if (got === want)");
+    // The first complaint is enough, and FuseSoC hands no plusarg on.
+    *bench = bench.replace("if ($test$plusargs(\"first\"))", "if (1'b1)");
     let place = written(&files, "fusesoc-failing-receiver");
     let (is_good, told) = target(&place, "sim", &[], &vlnv("async_dsp"));
     assert!(!is_good && told.contains("FAIL "), "{told}");

@@ -3,8 +3,8 @@
 use super::written;
 use crate::bus_card::text;
 use crate::tools::{require, run};
-use endat_gen::config::parse;
-use endat_gen::emit;
+use endat_config::parse;
+use endat_emit::emit;
 use endat_hdl::card::bus::HostBus;
 
 /// Interfaces with the ports behind them, which the component must have; address block and files.

@@ -2,8 +2,8 @@
 
 use super::written;
 use crate::tools::{require, require_python, run};
-use endat_gen::config::parse;
-use endat_gen::emit;
+use endat_config::parse;
+use endat_emit::emit;
 use std::fs;
 
 /// The system's pins: DATA stays HIGH, as without an encoder. Ends when a result has interrupted, or when that takes too long.

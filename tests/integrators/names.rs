@@ -2,7 +2,7 @@
 
 use super::written;
 use crate::tools::{folder, require_python, run};
-use endat_gen::config::{load_preset, parse, preset};
+use endat_config::{load_preset, parse, preset};
 
 /// Words of Python, YAML, SystemRDL, Tcl and LiteX that are no reserved words of Verilog, VHDL or C.
 const NAMES: [&str; 12] = [
@@ -59,7 +59,7 @@ fn names_that_are_words_elsewhere_are_names_here() {
         let text = preset("s6_two_channel")
             .unwrap()
             .replace("\"s6_two_channel\"", &format!("{name:?}"));
-        let files = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+        let files = endat_emit::emit(&parse("card.toml", &text).unwrap()).unwrap();
         let place = written(&files, &format!("name-{name}"));
         let module = files
             .iter()

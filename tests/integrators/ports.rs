@@ -2,10 +2,10 @@
 
 use super::{sources, written};
 use crate::tools::{require, run};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{load_any_preset, parse, Configuration};
-use endat_gen::language::Language;
-use endat_gen::{emit_in, protocols};
+use endat_config::{load_any_preset, parse, Configuration};
+use endat_console::artifact::Artifact;
+use endat_emit::language::Language;
+use endat_emit::{emit_in, protocols};
 use std::collections::BTreeSet;
 
 /// The channel of a port without registers, for each protocol; `sequence` is one of its ports, and a word of SystemVerilog.
@@ -148,7 +148,7 @@ fn every_file_around_a_core_names_the_ports_of_its_module() {
 #[test]
 #[ignore = "slow: ports of every preset in both languages"]
 fn every_file_around_every_preset_names_the_ports_of_its_module() {
-    use endat_gen::config::{PRESETS, RECEIVER_PRESETS};
+    use endat_config::{PRESETS, RECEIVER_PRESETS};
     let mut said = vec![];
     for (name, _) in PRESETS.iter().chain(RECEIVER_PRESETS) {
         for language in [Language::Verilog, Language::Vhdl] {

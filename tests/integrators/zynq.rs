@@ -2,9 +2,9 @@
 
 use super::written;
 use crate::tools::{require, run};
-use endat_gen::board::Board;
-use endat_gen::config::parse;
-use endat_gen::{emit, emit_in, language::Language};
+use endat_config::board::Board;
+use endat_config::parse;
+use endat_emit::{emit, emit_in, language::Language};
 use endat_hdl::card::bus::HostBus;
 use std::collections::BTreeSet;
 use std::fs;

@@ -3,7 +3,7 @@
 /// Cards and a receiver that have every key between them, and what is left of a card without any table that may be missing.
 pub const BASES: [&str; 8] = [
     // Whatever a card with a UART may have.
-    "name = \"whole\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\ncalibration_hz = 300_000\ntst_ns = 2_000\n\
+    "name = \"whole\"\nwith = [\"svd\", \"rdl\"]\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\ncalibration_hz = 300_000\ntst_ns = 2_000\n\
      filter_ns = 20\nstart_window_ns = 60\ntcal_max_ns = 6_000\nrecovery_min_ns = 12_000\nrecovery_max_ns = 20_000\ncable_m = 30\n\
      [[channel]]\nencoder = \"one\"\nprotocol = \"endat\"\nposition_bits = 25\ncommand = \"111000\"\nenabled = false\ndivider = 2\n\
      sources = [\"pin\"]\n[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n[trigger]\nsample_hz = 100\nsources = [\"timer\"]\n\

@@ -2,7 +2,7 @@
 
 use super::{projects, text_of, Word};
 use crate::tools::{self, require};
-use endat_gen::config::Project;
+use endat_config::Project;
 use endat_hdl::regs::start;
 use endat_regs::{Access, Values, BLOCKS, VERSION};
 use std::collections::BTreeSet;

@@ -7,7 +7,7 @@ mod peakrdl;
 
 use crate::program::good;
 use crate::tools::{self, require_python};
-use endat_gen::config::{load_preset, parse, preset, Project};
+use endat_config::{load_preset, parse, preset, Project};
 use endat_hdl::config::CardConfig;
 use endat_hdl::config::{LineParts, OutputParts, PhaseSource, SafetyParts};
 use endat_hdl::regs::{start, words};
@@ -62,7 +62,7 @@ fn projects() -> Vec<Project> {
 
 fn text_of(project: &Project, end: &str) -> String {
     let name = format!("{}{end}", project.name);
-    let files = endat_gen::maps::artifacts(project).unwrap();
+    let files = endat_emit::maps::artifacts(project).unwrap();
     let file = files.into_iter().find(|a| a.path == name);
     file.unwrap_or_else(|| panic!("no {name}")).text
 }
@@ -300,7 +300,7 @@ fn each_file_tells_its_unit_and_is_the_same_again() {
 #[test]
 fn maps_list_every_word_and_field_that_the_card_has() {
     let mut project = projects().remove(0);
-    let maps = |project: &Project| endat_gen::maps::artifacts(project).unwrap();
+    let maps = |project: &Project| endat_emit::maps::artifacts(project).unwrap();
     let has = |project: &Project, name: &str| -> Vec<bool> {
         let maps = maps(project);
         // LiteX's form has words only.

@@ -2,7 +2,7 @@
 
 use super::{projects, text_of, Word};
 use crate::tools::{self, require};
-use endat_gen::config::Project;
+use endat_config::Project;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

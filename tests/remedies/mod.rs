@@ -7,9 +7,9 @@ mod usage;
 
 use crate::bases::BASES;
 use document::Document;
-use endat_gen::config::parse_any;
-use endat_gen::config::{preset, PRESETS, RECEIVER_PRESETS};
-use endat_gen::error::Diagnostic;
+use endat_config::parse_any;
+use endat_config::{preset, PRESETS, RECEIVER_PRESETS};
+use endat_console::error::Diagnostic;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Forms of words that a walk must have met.

@@ -2,8 +2,8 @@
 
 use crate::verilog::mutations::{mutation, Mutation};
 use crate::verilog::testbench::{bench_passes, check_mutations, check_some};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::parse;
+use endat_config::parse;
+use endat_console::artifact::Artifact;
 use endat_hdl::protocols::ssi::cause;
 
 const SSI: &str = "protocol = \"ssi\"\n";
@@ -17,7 +17,7 @@ fn emitted(system_hz: u64, channels: &[&str], more: &str) -> Vec<Artifact> {
         "name = \"ssi\"\n[clock]\nsystem_hz = {system_hz}\n{channels}\
          [trigger]\nsample_hz = 500\nsources = [\"pin\", \"register\"]\n{more}"
     );
-    endat_gen::emit(&parse("ssi.toml", &text).unwrap()).unwrap()
+    endat_emit::emit(&parse("ssi.toml", &text).unwrap()).unwrap()
 }
 
 const GRAY: &str =

@@ -2,7 +2,7 @@
 
 use crate::bus::Master;
 use crate::program::{bad, good};
-use endat_gen::config::{parse, Project};
+use endat_config::{parse, Project};
 use endat_hdl::protocols::ssi::cause;
 use endat_hdl::regs::{Block, Protocol, Protocols, CARD, CHANNEL_CONFIG, RESULT};
 use endat_sim::bench::PinNames;

@@ -1,9 +1,9 @@
 //! A card with an SSI channel as its host has it: faults that are injected, words of a result, settings, and outputs beside the registers.
 
 use crate::desk::Desk;
+use endat_card::VirtualConfig;
+use endat_config::parse;
 use endat_driver::Reading;
-use endat_gen::config::parse;
-use endat_gen::virtual_card::VirtualConfig;
 
 /// A tenth of a turn of 12 bits, where the encoder stands.
 const PLACE: u64 = 409;

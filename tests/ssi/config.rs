@@ -1,6 +1,6 @@
 //! What a configuration may say of an SSI channel, with the line and the remedy of what it may not.
 
-use endat_gen::config::{load_preset, parse, preset};
+use endat_config::{load_preset, parse, preset};
 
 /// The preset with another line.
 fn changed(from: &str, to: &str) -> String {
@@ -72,7 +72,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         (
             "clock_hz = 1_000_000 ",
             "clock_hz = 125_000 ",
-            "ssi.toml:14: channel[0].clock_hz = 125000: the LOW behind the last bit is looked at 12000 ns after the last falling edge, recovery_min_ns = 10000 ends it sooner; use at least 150151 Hz, or raise recovery_min_ns to 12000, if the encoder's is as long",
+            "ssi.toml:14: channel[0].clock_hz = 125000: DATA is checked for LOW 12000 ns after the last falling edge, but recovery_min_ns = 10000 ends the LOW sooner; use at least 150151 Hz, or raise recovery_min_ns to 12000, if the encoder's is as long",
         ),
         (
             "code = \"gray\" ",
@@ -190,11 +190,11 @@ fn channel_takes_the_encoders_own_delay_and_clocks_from_80_khz_to_4_mhz() {
         );
         let with = |ns: u64| single(&format!("{keys}bit_delay_ns = {ns}\n"));
         let card = parse("single.toml", &with(most_ns)).unwrap();
-        let told = endat_gen::explain::report(&card).to_string();
+        let told = endat_config::explain::report(&card).to_string();
         let line = format!("; {most_ns} ns in the encoder and ");
         assert!(told.contains(&line), "{told}");
         let slow = parse("single.toml", &with(sheet_ns)).unwrap();
-        let told = endat_gen::explain::report(&slow).to_string();
+        let told = endat_config::explain::report(&slow).to_string();
         // A period, but six cycles of 10 ns at the input.
         let left_ns = 1_000_000_000 / slow.card.channels[0].spec.clock_hz - 60;
         let line = format!("  bits             taken up to {left_ns} ns after their clock edge; {sheet_ns} ns in the encoder and ");

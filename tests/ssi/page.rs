@@ -1,7 +1,7 @@
 //! docs/ssi.md: each of its statements has a test, and its tables are what the sources have.
 
 use crate::program::{bad, good};
-use endat_gen::config::parse;
+use endat_config::parse;
 use endat_hdl::protocols::ssi::cause;
 use endat_hdl::protocols::ssi::specials::Special;
 use std::collections::BTreeMap;
@@ -186,7 +186,7 @@ fn explain_says_what_checks_an_ssi_position() {
              [trigger]\nsample_hz = 500\n[host]\nbus = \"apb\"\n"
         );
         let project = parse("one.toml", &text).unwrap();
-        let told = endat_gen::explain::report(&project).to_string();
+        let told = endat_config::explain::report(&project).to_string();
         told.contains("nothing to check it by: see twice and parity")
     };
     let others = [

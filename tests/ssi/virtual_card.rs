@@ -2,8 +2,8 @@
 
 use crate::desk::Desk;
 use crate::program::good;
-use endat_gen::config::{parse, Project};
-use endat_gen::virtual_card::VirtualConfig;
+use endat_card::VirtualConfig;
+use endat_config::{parse, Project};
 
 /// A configuration of `tests/data/ssi_status_bits`.
 fn file(name: &str) -> String {

@@ -4,9 +4,9 @@ use super::on_both_cores;
 use crate::tools;
 use crate::verilog::testbench::at_50_mhz;
 use crate::verilog::write;
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{parse, preset};
-use endat_gen::readers::Reader;
+use endat_config::{parse, preset};
+use endat_console::artifact::Artifact;
+use endat_tools::readers::Reader;
 use std::path::Path;
 use Reader::{Icarus, Verilator};
 
@@ -56,21 +56,21 @@ fn card(khz: u64, bus: &str) -> Vec<Artifact> {
         hz = 1_000 * khz,
         bit_hz = 1_000 * khz / 16,
     );
-    endat_gen::emit(&parse("stranger.toml", &text).unwrap()).unwrap()
+    endat_emit::emit(&parse("stranger.toml", &text).unwrap()).unwrap()
 }
 
 /// Runs the bench of `files` in `folder`; whether it passed, and what was said.
-fn play(folder: &Path, files: &[Artifact], reader: Reader) -> (bool, String) {
-    reader.play(folder, files, &[]).unwrap()
+fn play(folder: &Path, files: &[Artifact], reader: Reader, plusargs: &[&str]) -> (bool, String) {
+    reader.play(folder, files, plusargs).unwrap()
 }
 
 /// Runs cases; the complaints.
-fn complaints(test: &str, cases: &[(u64, &str, Reader)]) -> Vec<String> {
+fn complaints(test: &str, cases: &[(u64, &str, Reader)], plusargs: &[&str]) -> Vec<String> {
     on_both_cores(cases, |index, (khz, bus, reader)| {
         let files = card(*khz, bus);
         let case = format!("{khz} kHz, {bus}, {reader:?}");
         let (folder, _) = write(&format!("strangers-{test}-{index}"), &files);
-        let (passes, text) = play(&folder, &files, *reader);
+        let (passes, text) = play(&folder, &files, *reader, plusargs);
         let _ = std::fs::remove_dir_all(folder);
         (!passes).then(|| format!("{case}: {text}"))
     })
@@ -80,11 +80,12 @@ pub fn has_tools() -> bool {
     tools::require("iverilog", "strangers") && tools::require("verilator", "strangers")
 }
 
-/// Catches a start value that SystemVerilog sets before time 0, and a bench that counts other clocks than it makes.
+/// Catches a start value that SystemVerilog sets before time 0, and a bench that counts other clocks than it makes. The first steps of the
+/// bench show both; `bench_of_a_quick_card_passes_and_fails_on_broken_cards` runs all steps once.
 #[test]
 fn two_languages_buses_and_odd_clocks_pass() {
     if has_tools() {
-        let said = complaints("quick", &QUICK);
+        let said = complaints("quick", &QUICK, &["+quick"]);
         assert!(said.is_empty(), "{}", said.join("\n"));
     }
 }
@@ -125,7 +126,7 @@ fn clocks_pass(test: &str, is_wanted: impl Fn(&str) -> bool) {
     }
     if has_tools() {
         let wanted: Vec<_> = cases.into_iter().filter(|case| is_wanted(case.1)).collect();
-        let said = complaints(test, &wanted);
+        let said = complaints(test, &wanted, &[]);
         assert!(said.is_empty(), "{}", said.join("\n"));
     }
 }
@@ -134,7 +135,7 @@ fn clocks_pass(test: &str, is_wanted: impl Fn(&str) -> bool) {
 #[test]
 fn a_failing_bench_has_an_exit_code() {
     if tools::require("iverilog", "exit code of a failing bench") {
-        failing_bench_has_an_exit_code("icarus", Icarus("-g2005"));
+        failing_bench_has_an_exit_code("icarus", Icarus("-g2005"), &["+quick"]);
     }
 }
 
@@ -142,11 +143,11 @@ fn a_failing_bench_has_an_exit_code() {
 #[ignore = "slow: a bench built by Verilator"]
 fn a_failing_bench_of_verilator_has_an_exit_code() {
     if tools::require("verilator", "exit code of a failing bench") {
-        failing_bench_has_an_exit_code("verilator", Verilator);
+        failing_bench_has_an_exit_code("verilator", Verilator, &[]);
     }
 }
 
-fn failing_bench_has_an_exit_code(name: &str, reader: Reader) {
+fn failing_bench_has_an_exit_code(name: &str, reader: Reader, plusargs: &[&str]) {
     let mut files = card(24_000, "apb");
     let bench = files.iter_mut().find(|f| f.path.ends_with("_tb.v"));
     let text = &mut bench.unwrap().text;
@@ -154,7 +155,7 @@ fn failing_bench_has_an_exit_code(name: &str, reader: Reader) {
     assert_eq!(text.matches(right).count(), 1);
     *text = text.replace(right, &right.replace("4474", "4475"));
     let (folder, _) = write(&format!("strangers-exit-{name}"), &files);
-    let (is_good, text) = play(&folder, &files, reader);
+    let (is_good, text) = play(&folder, &files, reader, plusargs);
     assert!(!is_good && text.contains("FAIL 1 complaints"), "{text}");
 }
 
@@ -169,9 +170,9 @@ fn passes_with(test: &str, changes: &[(&str, &str)]) {
     };
     let text = at_50_mhz(preset("s6_two_channel").unwrap());
     let text = changes.iter().fold(text, change);
-    let files = endat_gen::emit(&parse("changed.toml", &text).unwrap()).unwrap();
+    let files = endat_emit::emit(&parse("changed.toml", &text).unwrap()).unwrap();
     let (folder, _) = write(test, &files);
-    let (is_good, text) = play(&folder, &files, Icarus("-g2012"));
+    let (is_good, text) = play(&folder, &files, Icarus("-g2012"), &[]);
     assert!(is_good, "{text}");
 }
 

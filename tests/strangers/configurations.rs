@@ -1,7 +1,7 @@
 //! The configurations whose emissions strangers are given: every preset, and cards that have what no preset has.
 
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{parse_any, preset, Configuration, PRESETS, RECEIVER_PRESETS};
+use endat_config::{parse_any, preset, Configuration, PRESETS, RECEIVER_PRESETS};
+use endat_console::artifact::Artifact;
 use endat_hdl::card::bus::HostBus;
 use endat_regs::Protocol;
 
@@ -146,8 +146,8 @@ pub fn texts() -> Vec<(String, String)> {
 pub fn emission(name: &str, text: &str) -> Emission {
     let configuration = parse_any(&format!("{name}.toml"), text).unwrap();
     let files = match &configuration {
-        Configuration::Card(card) => endat_gen::emit(card),
-        Configuration::Receiver(receiver) => endat_gen::protocols::t_format::emit(receiver),
+        Configuration::Card(card) => endat_emit::emit(card),
+        Configuration::Receiver(receiver) => endat_emit::protocols::t_format::emit(receiver),
     };
     Emission {
         configuration,

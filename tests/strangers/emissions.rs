@@ -5,8 +5,9 @@ use super::configurations::{emission, texts, Emission};
 use super::on_both_cores;
 use crate::tools::{self, run};
 use crate::verilog::write;
-use endat_gen::config::{Configuration, PRESETS, RECEIVER_PRESETS};
-use endat_gen::readers::{is_bench, is_core, Reader, LINTERS};
+use endat_config::{Configuration, PRESETS, RECEIVER_PRESETS};
+use endat_tools::readers::{is_bench, is_core, Reader, LINTERS};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 const PYTHON: &str = "cocotb at every emission";
@@ -85,6 +86,26 @@ fn has_cocotb() -> bool {
     ]
     .iter()
     .all(|module| tools::require_python(module, PYTHON))
+}
+
+/// Catches a module that two cores of one design have with different contents: a tool takes one of them for both. Needs no outside tool.
+#[test]
+fn modules_of_one_name_in_several_emissions_are_the_same() {
+    let mut modules: BTreeMap<String, String> = BTreeMap::new();
+    for (name, text) in wanted(|name| QUICK.contains(&name)) {
+        let files = emission(&name, &text).files;
+        for file in files.iter().filter(|f| is_core(f)) {
+            let module = |line: &str| line.strip_prefix("module ").map(str::to_owned);
+            let module = file.text.lines().find_map(module).expect(&file.path);
+            let before = modules.entry(module.clone()).or_insert(file.text.clone());
+            assert!(
+                *before == file.text,
+                "{module}: another text in {}",
+                file.path
+            );
+        }
+    }
+    assert!(modules.len() > 40, "{}", modules.len());
 }
 
 /// Catches a word of one language that another one reserves, a width that only one reader minds, and a bench that does not fit its card.

@@ -3,8 +3,8 @@
 use super::on_both_cores;
 use crate::program::{bad, good, Dir};
 use crate::verilog::area::require;
-use endat_gen::area::flows::{self, Flow, FLOWS};
-use endat_gen::config::{load_any_preset, PRESETS, RECEIVER_PRESETS};
+use endat_config::{load_any_preset, PRESETS, RECEIVER_PRESETS};
+use endat_workshop::flows::{self, Flow, FLOWS};
 
 /// Puts the card of a preset through flows; what is wrong.
 fn complaints(preset: &str, flows: &[Flow]) -> Vec<String> {
@@ -85,7 +85,7 @@ fn what_a_flow_says_of_bad_verilog_is_told() {
     }
     let gowin = &named(&["gowin"])[0];
     let text = "module card (input wire a, input wire d, output reg q, output wire z);\n    always @(posedge a) q <= d;\n    assign z = d & q[3];\nendmodule\n";
-    let files = [endat_gen::artifact::Artifact::new("card.v", text)];
+    let files = [endat_console::artifact::Artifact::new("card.v", text)];
     let found = flows::through(&files, "card", *gowin).unwrap();
     assert!(!found.warnings.is_empty(), "{found:?}");
     let dir = Dir::new("flows");

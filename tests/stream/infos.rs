@@ -1,9 +1,9 @@
 //! Additional data of one frame with its position: in the results, and in the sets of the stream.
 
 use crate::desk::Desk;
+use endat_card::VirtualConfig;
+use endat_config::{parse, preset, Project};
 use endat_driver::AdditionalData as Info;
-use endat_gen::config::{parse, preset, Project};
-use endat_gen::virtual_card::VirtualConfig;
 use endat_host::stream::SampleSet;
 use endat_sim::{encoder::Defect, US};
 use std::time::Duration;

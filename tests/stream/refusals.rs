@@ -1,6 +1,6 @@
 //! What the table `[stream]` refuses, with the numbers and the remedy.
 
-use endat_gen::config::{parse, preset};
+use endat_config::{parse, preset};
 
 /// The complaints about the preset with service, with these texts replaced.
 fn complaints(changes: &[(&str, &str)]) -> Vec<String> {
@@ -25,7 +25,7 @@ fn a_stream_that_cannot_fit_is_refused() {
         ),
         (
             &[("fifo_bytes = 2_048", "fifo_bytes = 3_000")],
-            "stream.fifo_bytes = 3000: no size of a buffer; use 0 (no stream), 1024, 2048, 4096, 8192",
+            "stream.fifo_bytes = 3000: not a buffer size; use 0 (no stream), 1024, 2048, 4096, 8192",
         ),
         (
             &[("fifo_bytes = 2_048", "fifo_bytes = 0"), ("start = \"off\"", "start = \"push\"")],

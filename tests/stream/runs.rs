@@ -2,8 +2,8 @@
 
 use super::infos::{push, pushed, text, US_CYCLES};
 use crate::desk::Desk;
-use endat_gen::config::parse;
-use endat_gen::virtual_card::VirtualConfig;
+use endat_card::VirtualConfig;
+use endat_config::parse;
 use endat_host::feed::Feed;
 use endat_host::stream::SampleSet;
 use endat_sim::US;

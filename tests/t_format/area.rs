@@ -3,10 +3,10 @@
 use crate::tools;
 use crate::verilog::area::{require, subject};
 use crate::verilog::is_core;
-use endat_gen::area::{synthesise, Family, ECP5, ICE40, XC6S};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{load_any_preset, Configuration};
-use endat_gen::protocols::t_format::emit;
+use endat_config::{load_any_preset, Configuration};
+use endat_console::artifact::Artifact;
+use endat_emit::protocols::t_format::emit;
+use endat_tools::area::{synthesise, Family, ECP5, ICE40, XC6S};
 use std::fs;
 
 /// LUTs of four inputs and flip-flops of Microchip's T-Format interface.

@@ -2,9 +2,9 @@
 
 use crate::verilog::mutations::{mutation, Mutation};
 use crate::verilog::testbench::{bench_passes, check_mutations, check_some};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{parse_any, preset, Configuration};
-use endat_gen::protocols::t_format::emit;
+use endat_config::{parse_any, preset, Configuration};
+use endat_console::artifact::Artifact;
+use endat_emit::protocols::t_format::emit;
 
 /// The preset with other keys.
 fn emitted(changes: &[(&str, &str)]) -> Vec<Artifact> {

@@ -25,7 +25,15 @@ fn the_preset_explains_itself() {
 #[test]
 fn the_preset_is_emitted_and_checked() {
     let dir = Dir::new("t-format");
-    let arguments = ["emit", "--preset", "async_dsp", "--out", &dir.path("o")];
+    let arguments = [
+        "emit",
+        "--preset",
+        "async_dsp",
+        "--with",
+        "all",
+        "--out",
+        &dir.path("o"),
+    ];
     good(&arguments);
     let check = [&arguments[..], &["--check"]].concat();
     assert!(good(&check).ends_with("up to date\n"));

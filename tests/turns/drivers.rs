@@ -200,7 +200,7 @@ int main(void)
     let mut arguments = vec![
         "-std=c99", "-Wall", "-Werror", "-o", "run", "main.c", &include,
     ];
-    let sources = endat_gen::driver::FILES
+    let sources = endat_emit::driver::FILES
         .iter()
         .filter(|(name, _)| name.ends_with(".c"));
     let sources: Vec<String> = sources.map(|(name, _)| format!("{home}/{name}")).collect();

@@ -4,12 +4,12 @@ mod drivers;
 
 use crate::desk::Desk;
 use crate::program::{bad, good, run, Dir};
-use endat_gen::config::{parse, preset, Project};
-use endat_gen::recording::derive::Derivation;
-use endat_gen::virtual_card::VirtualConfig;
+use endat_card::VirtualConfig;
+use endat_config::{parse, preset, Project};
 use endat_host::feed::{Feed, Row};
 use endat_host::range::Ranges;
 use endat_host::units::Scale;
+use endat_recording::derive::Derivation;
 use std::collections::VecDeque;
 use std::fs;
 use std::time::Duration;
@@ -248,7 +248,10 @@ fn what_counts_turns_is_refused_until_somebody_says_what_a_turn_is() {
     let read = good(&["read", "--port", &port, "--range", "0=17+16"]);
     assert!(read.contains(" deg + 100 turns"), "{read}");
     let told = bad(&["read", "--port", &port, "--range", "2=17"], 2);
-    assert!(told.contains("--range = 2: there is no channel"), "{told}");
+    assert!(
+        told.contains("--range = 2: the card has no such channel"),
+        "{told}"
+    );
     let told = bad(&["read", "--port", &port, "--range", "1=12+13"], 2);
     assert!(
         told.contains("--range = 1=12+13: is 25 bits, and positions of the channel have 17"),
@@ -318,7 +321,7 @@ fn without_numbers(project: &Project) -> Vec<(String, Vec<String>)> {
             .iter()
             .any(|s| path.ends_with(s))
     };
-    let files = endat_gen::emit(project).unwrap().into_iter();
+    let files = endat_emit::emit(project).unwrap().into_iter();
     let files = files.filter(|file| is_logic(&file.path));
     let is_text = |line: &&str| !line.trim_start().starts_with(['/', '#']);
     files

@@ -1,7 +1,7 @@
 //! Budgets: the exact area of card, channel and blocks.
 
 use crate::tools;
-use endat_gen::area::{self, Family, Subject, Usage, ICE40, XC6S};
+use endat_tools::area::{self, Family, Subject, Usage, ICE40, XC6S};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};

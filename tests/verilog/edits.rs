@@ -4,10 +4,10 @@ use super::bus_bench;
 use super::testbench::{bench_passes, run_bench};
 use crate::strangers::on_both_cores;
 use crate::tools;
-use endat_gen::artifact::Artifact;
-use endat_gen::campaign::mutants::Emission;
-use endat_gen::readers::passes;
+use endat_console::artifact::Artifact;
 use endat_hdl::card::bus::HostBus;
+use endat_tools::readers::passes;
+use endat_workshop::mutants::Emission;
 use std::collections::BTreeMap;
 
 /// Keys of an edit.

@@ -2,10 +2,10 @@
 
 use super::area::subject;
 use crate::tools;
-use endat_gen::artifact::Artifact;
-use endat_gen::config::load_preset;
-use endat_gen::prove::Subject;
+use endat_config::load_preset;
+use endat_console::artifact::Artifact;
 use endat_hdl::endat::transaction::cause;
+use endat_tools::prove::Subject;
 use std::fs;
 
 /// The five equations as Liu et al. publish them for 29 position bits (2024): d[30] is F1, d[29] is F2, d[28] the LSB.

@@ -4,7 +4,7 @@
 use super::write;
 use crate::strangers::on_both_cores;
 use crate::tools;
-use endat_gen::config::{load_preset, PRESETS};
+use endat_config::{load_preset, PRESETS};
 use std::path::PathBuf;
 
 /// A preset as it is emitted.
@@ -16,7 +16,7 @@ struct Preset {
 }
 
 fn preset(test: &str, name: &'static str) -> Preset {
-    let emission = endat_gen::emit(&load_preset(name).unwrap()).unwrap();
+    let emission = endat_emit::emit(&load_preset(name).unwrap()).unwrap();
     let (folder, files) = write(&format!("{test}-{name}"), &emission);
     Preset {
         name,

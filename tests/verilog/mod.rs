@@ -16,9 +16,9 @@ mod wrong_designs;
 
 pub use crate::emitted::{file_of, has_block, name_of};
 use crate::tools;
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{load_preset, Project, DEFAULT_PRESET};
-pub use endat_gen::readers::is_core;
+use endat_config::{load_preset, Project, DEFAULT_PRESET};
+use endat_console::artifact::Artifact;
+pub use endat_tools::readers::is_core;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -40,13 +40,13 @@ pub fn quick_project() -> Project {
 /// Everything that is emitted for [`quick_project`]; made once.
 pub fn quick_files() -> &'static [Artifact] {
     static FILES: OnceLock<Vec<Artifact>> = OnceLock::new();
-    FILES.get_or_init(|| endat_gen::emit(&quick_project()).unwrap())
+    FILES.get_or_init(|| endat_emit::emit(&quick_project()).unwrap())
 }
 
 /// Everything that is emitted for the preset; made once.
 pub fn preset_files() -> &'static [Artifact] {
     static FILES: OnceLock<Vec<Artifact>> = OnceLock::new();
-    FILES.get_or_init(|| endat_gen::emit(&load_preset(DEFAULT_PRESET).unwrap()).unwrap())
+    FILES.get_or_init(|| endat_emit::emit(&load_preset(DEFAULT_PRESET).unwrap()).unwrap())
 }
 
 /// Writes the Verilog files of a card into a folder of its own; the folder, and the names of those of the card itself.

@@ -1,8 +1,8 @@
-//! Every port of every block of the emitted Verilog, in every cycle of its bench, against the design. This is what `campaign mutants` counts as `ports`.
+//! Every port of every block of the emitted Verilog, in every cycle of its bench, against the design. This is what `endat-workshop mutants` counts as `ports`.
 
 use crate::tools;
-use endat_gen::campaign::mutants::recorder::{self, Watched};
-use endat_gen::campaign::mutants::{alone, record, subjects, sums_alone, Emission, Recording};
+use endat_workshop::mutants::recorder::{self, Watched};
+use endat_workshop::mutants::{alone, record, subjects, sums_alone, Emission, Recording};
 use rtl_design::elaborate::Design;
 use rtl_design::engine::{Compiled, Engine, Keep, PortId};
 use std::collections::HashMap;

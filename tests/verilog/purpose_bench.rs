@@ -3,8 +3,8 @@
 
 use super::mutations::{mutation, Mutation};
 use super::testbench::{bench_passes, check_mutations, fit};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{load_preset, parse};
+use endat_config::{load_preset, parse};
+use endat_console::artifact::Artifact;
 use endat_hdl::card::bus::HostBus;
 
 const BROKEN: &[Mutation] = &[
@@ -111,7 +111,7 @@ fn slow(system_hz: &str, more: &str) -> Vec<Artifact> {
         .replace("100_000_000", system_hz)
         .replace("3_125_000", "2_500_000")
         .replace("= [\"register\"]", "= [\"pin\"]");
-    endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap()
+    endat_emit::emit(&parse("card.toml", &text).unwrap()).unwrap()
 }
 
 /// Needs no outside tool. `bench_of_a_quick_card_passes_and_fails_on_broken_cards` runs the steps of the outputs.
@@ -195,7 +195,7 @@ fn without_initial_values(parts: &str) -> Vec<Artifact> {
     let text = crate::bus_card::text(HostBus::Wishbone, &more)
         .replace("100_000_000", "12_500_000")
         .replace("= [\"register\"]", "= [\"pin\"]");
-    let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+    let card = endat_emit::emit(&parse("card.toml", &text).unwrap()).unwrap();
     for file in card
         .iter()
         .filter(|f| f.path.ends_with(".v") && !f.path.contains("_tb"))
@@ -216,7 +216,7 @@ fn what_synplify_ignores_is_in_no_card_without_initial_values() {
     without_initial_values(ASKED);
     // The same card with start values has them where Synplify reads none.
     let text = crate::bus_card::text(HostBus::Wishbone, "");
-    let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+    let card = endat_emit::emit(&parse("card.toml", &text).unwrap()).unwrap();
     assert!(card.iter().any(|file| file.text.contains("initial ")));
 }
 
@@ -289,7 +289,7 @@ fn benches_of_the_published_systems_do_what_those_are_for() {
         ),
     ];
     for (name, steps) in wanted {
-        let files = endat_gen::emit(&load_preset(name).unwrap()).unwrap();
+        let files = endat_emit::emit(&load_preset(name).unwrap()).unwrap();
         let bench = files.iter().find(|f| f.path.ends_with("_tb.v")).unwrap();
         for step in steps {
             let told = format!("tell(\"{step}\");");
@@ -305,6 +305,6 @@ fn benches_of_the_published_systems_do_what_those_are_for() {
 #[test]
 #[ignore = "slow: bench of a preset with slow clock rates"]
 fn bench_of_a_control_loop_passes_at_slow_clock_rates() {
-    let files = endat_gen::emit(&load_preset("clb_2mhz").unwrap()).unwrap();
+    let files = endat_emit::emit(&load_preset("clb_2mhz").unwrap()).unwrap();
     bench_passes("purpose-clb", &files, &["+slow"]);
 }

@@ -3,8 +3,8 @@
 use super::quick;
 use super::t_format_mutations::{MIXED_MUTATIONS, T_FORMAT_MUTATIONS};
 use super::testbench::{bench_passes, check_mutations, check_some, fit};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{load_preset, parse};
+use endat_config::{load_preset, parse};
+use endat_console::artifact::Artifact;
 
 const PRESET: &str = "mixed_protocols";
 const ENDAT: &str = "[[channel]]\nposition_bits = 29\ncommand = \"111000\"\n";
@@ -24,7 +24,7 @@ fn card(channels: &[String], more: &str) -> Vec<Artifact> {
          [trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n{more}[host]\nbus = \"apb\"\n",
         channels.concat(),
     );
-    endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap()
+    endat_emit::emit(&parse("card.toml", &text).unwrap()).unwrap()
 }
 
 fn passes(name: &str, channels: &[String], more: &str) {
@@ -35,7 +35,7 @@ fn passes(name: &str, channels: &[String], more: &str) {
 #[test]
 #[ignore = "slow: bench of the preset"]
 fn it_passes_on_the_mixed_preset() {
-    let files = endat_gen::emit(&load_preset(PRESET).unwrap()).unwrap();
+    let files = endat_emit::emit(&load_preset(PRESET).unwrap()).unwrap();
     bench_passes("mixed-preset", &files, &[]);
 }
 
@@ -84,7 +84,7 @@ fn alone() -> Vec<Artifact> {
 }
 
 fn mixed() -> Vec<Artifact> {
-    endat_gen::emit(&quick(load_preset(PRESET).unwrap())).unwrap()
+    endat_emit::emit(&quick(load_preset(PRESET).unwrap())).unwrap()
 }
 
 #[test]

@@ -6,12 +6,12 @@ use super::{
 };
 use crate::strangers::on_both_cores;
 use crate::tools;
-use endat_gen::artifact::Artifact;
-use endat_gen::config::{parse, preset};
-pub use endat_gen::readers::passes;
+use endat_config::{parse, preset};
+use endat_console::artifact::Artifact;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::{ServiceParts, LIST};
 use endat_hdl::endat::service::program::{program, ServiceTimes};
+pub use endat_tools::readers::passes;
 
 /// The bench has passed.
 fn assert_passes(text: &str) {
@@ -53,7 +53,7 @@ fn bench_passes_on_the_preset() {
 fn bench_passes_on_other_cards() {
     let other = |name: &str, text: String| {
         let project = parse("other.toml", &text).unwrap();
-        let files = endat_gen::emit(&project).unwrap();
+        let files = endat_emit::emit(&project).unwrap();
         bench_passes(name, &files, &[]);
     };
     let frame = "[clock]\nsystem_hz = 64_000_000\n[trigger]\nsample_hz = 1_000\nsources = [\"register\"]\n[link]\nbaud = 3_000_000\nread_hz = 100\n[board]\nname = \"papilio_pro\"\n";
@@ -74,7 +74,7 @@ fn long_cable() -> Vec<Artifact> {
         [[channel]]\nposition_bits = 31\ncommand = \"000111\"\ncable_m = 780\n\
         [trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n[host]\nbus = \"parallel\"\n\
         [service]\nparts = [\"requests\", \"continuous\"]\n[outputs]\nparts = [\"interrupt\"]\n";
-    endat_gen::emit(&parse("long_cable.toml", text).unwrap()).unwrap()
+    endat_emit::emit(&parse("long_cable.toml", text).unwrap()).unwrap()
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn bench_passes_on_a_card_whose_channels_have_triggers_of_their_own() {
             channel("sources = [\"timer\"]\n"),
             channel("enabled = false\n")
         );
-        let files = endat_gen::emit(&parse("own.toml", &text).unwrap()).unwrap();
+        let files = endat_emit::emit(&parse("own.toml", &text).unwrap()).unwrap();
         assert!(has_block(&files, "channel_trigger"));
         bench_passes("own_triggers", &files, &[]);
     }
@@ -133,7 +133,7 @@ fn bench_passes_on_a_card_with_all_line_parts() {
         let (head, tail) = text.split_once("[line]").unwrap();
         let parts = "parts = [\"alignment\", \"margin\", \"double_edge\"]";
         let text = format!("{head}[line]{}", tail.replacen("parts = []", parts, 1));
-        let files = endat_gen::emit(&parse("line.toml", &text).unwrap()).unwrap();
+        let files = endat_emit::emit(&parse("line.toml", &text).unwrap()).unwrap();
         assert!(has_block(&files, "line_monitor"));
         bench_passes("line", &files, &[]);
     }
@@ -146,7 +146,7 @@ fn bench_passes_on_a_card_with_requests() {
     if tools::require("iverilog", "emitted test bench") {
         let mut project = quick_project();
         project.card.service.requests = true;
-        let files = endat_gen::emit(&project).unwrap();
+        let files = endat_emit::emit(&project).unwrap();
         assert!(has_block(&files, "service"));
         bench_passes("requests", &files, &[]);
     }
@@ -167,7 +167,7 @@ fn bench_passes_on_a_card_with_initialisation_only_as_it_stands() {
         continuous: true,
         initialise: true,
     };
-    let files = endat_gen::emit(&project).unwrap();
+    let files = endat_emit::emit(&project).unwrap();
     bench_passes("initialise", &files, &[]);
     type Change = fn(&mut ServiceTimes);
     let times = |change: Change| {
@@ -270,7 +270,8 @@ pub fn notices<'m>(test: &str, files: &[Artifact], mutations: impl Iterator<Item
     assert!(survivors.is_empty(), "not noticed: {survivors:?}");
 }
 
-/// A card of two channels whose bench is quick to simulate: its system clock is slow, its host has a bus. It notices mutations of every kind.
+/// Cards whose bench is quick to simulate: their system clock is slow, their host has a bus. All steps on one channel, the first ones on two
+/// channels, which notice mutations of every kind.
 #[test]
 fn bench_of_a_quick_card_passes_and_fails_on_broken_cards() {
     fit(quick_files(), MUTATIONS);
@@ -279,7 +280,9 @@ fn bench_of_a_quick_card_passes_and_fails_on_broken_cards() {
     if !tools::require("iverilog", "emitted test bench") {
         return;
     }
-    assert_passes(&run_bench("quick-card", &files, &[]));
+    let one_channel = bus_bench::one_channel(HostBus::Apb);
+    assert_passes(&run_bench("one-channel", &one_channel, &[]));
+    assert_passes(&run_bench("quick-card", &files, &["+quick"]));
     let core = [
         "CRC: its first bit not compared",
         "a bad frame replaces the last good position",

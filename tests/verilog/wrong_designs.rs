@@ -1,9 +1,9 @@
 //! Wrong designs and the emitted bench: one program with all mutants says of each what the mutant printed alone says.
 
 use crate::tools;
-use endat_gen::campaign::mutants::chosen::{drawn, proof_sees, Chosen};
-use endat_gen::campaign::mutants::Emission;
-use endat_gen::readers::Reader;
+use endat_tools::readers::Reader;
+use endat_workshop::mutants::chosen::{drawn, proof_sees, Chosen};
+use endat_workshop::mutants::Emission;
 use rtl_design::mutate::Kind;
 use std::collections::{BTreeMap, BTreeSet};
 

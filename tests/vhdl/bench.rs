@@ -5,8 +5,8 @@ use super::{emission, ghdl, listed, mutant, preset, quick, write};
 use crate::strangers::on_both_cores;
 use crate::tools;
 use crate::verilog::mutations::Mutation;
-use endat_gen::artifact::Artifact;
-use endat_gen::config;
+use endat_config as config;
+use endat_console::artifact::Artifact;
 use std::path::Path;
 
 /// Cards of this size take a simulator a second.

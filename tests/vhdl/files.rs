@@ -1,9 +1,9 @@
 //! The files of an emission in VHDL, and what the command line says about them.
 
 use super::{listed, preset};
-use endat_gen::artifact::Artifact;
-use endat_gen::config::load_preset;
-use endat_gen::language::Language;
+use endat_config::load_preset;
+use endat_console::artifact::Artifact;
+use endat_emit::language::Language;
 
 fn text<'f>(files: &'f [Artifact], path: &str) -> &'f str {
     let found = files.iter().find(|f| f.path == path);
@@ -62,10 +62,10 @@ fn the_list_has_the_core_in_order() {
 fn component_and_template_have_the_ports_of_the_top() {
     for language in [Language::Verilog, Language::Vhdl] {
         let project = load_preset("s6_two_channel").unwrap();
-        let files = endat_gen::emit_in(&project, language).unwrap();
+        let files = endat_emit::emit_in(&project, language).unwrap();
         let component = ports(text(&files, "s6_two_channel_component.vhd"), " : ");
         let template = ports(text(&files, "s6_two_channel_instance.vho"), "=>");
-        let design = endat_gen::design(&project).unwrap();
+        let design = endat_emit::design(&project).unwrap();
         let top = design.top();
         let own: Vec<&String> = top.ports.iter().map(|p| &top.nets[p.net].name).collect();
         assert_eq!(component.iter().collect::<Vec<_>>(), own);
@@ -94,8 +94,8 @@ fn the_text_is_ascii_with_lines_of_a_bearable_length() {
 fn what_the_bench_plays_has_good_positions() {
     for name in ["s6_two_channel", "clb_2mhz", "mixed_protocols"] {
         let project = load_preset(name).unwrap();
-        let design = endat_gen::design(&project).unwrap();
-        let played = endat_gen::vhdl::card(&project, &design).unwrap();
+        let design = endat_emit::design(&project).unwrap();
+        let played = endat_emit::vhdl::card(&project, &design).unwrap();
         assert_eq!(played.good, 2 * project.card.channels.len(), "{name}");
     }
 }
@@ -114,7 +114,7 @@ fn an_unknown_language_is_refused_with_those_there_are() {
 #[test]
 fn cards_with_a_bus_have_a_bench_with_encoders() {
     let bare = format!("{}bus = \"none\"\n", super::QUICK_BEGINS);
-    let bare = endat_gen::config::parse_any_on("bare.toml", &bare, None).unwrap();
+    let bare = endat_config::parse_any_on("bare.toml", &bare, None).unwrap();
     let cases = [
         (preset("clb_2mhz"), true),
         (preset("ssi_two_channel"), true),

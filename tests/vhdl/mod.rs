@@ -7,10 +7,10 @@ mod mutations;
 use crate::strangers::on_both_cores;
 use crate::tools;
 use crate::verilog::mutations::Mutation;
-use endat_gen::artifact::Artifact;
-use endat_gen::board::{self, Board};
-use endat_gen::config::{self, Configuration};
-use endat_gen::language::Language;
+use endat_config::board::{self, Board};
+use endat_config::{self as config, Configuration};
+use endat_console::artifact::Artifact;
+use endat_emit::language::Language;
 use mutations::MUTATIONS;
 use rtl_design::elaborate::block_name;
 use std::path::{Path, PathBuf};
@@ -21,9 +21,9 @@ const STANDARDS: [&str; 2] = ["--std=93", "--std=08"];
 /// Everything that is emitted for a configuration in VHDL.
 fn emission(configuration: &Configuration) -> Vec<Artifact> {
     match configuration {
-        Configuration::Card(card) => endat_gen::emit_in(card, Language::Vhdl),
+        Configuration::Card(card) => endat_emit::emit_in(card, Language::Vhdl),
         Configuration::Receiver(receiver) => {
-            endat_gen::protocols::t_format::emit_in(receiver, Language::Vhdl)
+            endat_emit::protocols::t_format::emit_in(receiver, Language::Vhdl)
         }
     }
     .unwrap()
@@ -272,7 +272,7 @@ fn the_component_of_the_verilog_is_analysed() {
     }
     let folder = tools::folder("vhdl-component");
     for name in ["ti_three_channel", "s6_two_channel"] {
-        let files = endat_gen::emit(&config::load_preset(name).unwrap()).unwrap();
+        let files = endat_emit::emit(&config::load_preset(name).unwrap()).unwrap();
         let path = format!("{name}_component.vhd");
         let file = files.iter().find(|f| f.path == path).unwrap();
         std::fs::write(folder.join(&path), &file.text).unwrap();

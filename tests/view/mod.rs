@@ -2,11 +2,13 @@
 
 mod crowd;
 
-use crate::hosts::{quick_service_port, quicker_service_file, slow_card, Served, SERVICE};
+use crate::hosts::{
+    quick_service_port, quick_text, quicker_service_file, slow_card, Served, SERVICE,
+};
 use crate::program::{self, begun, Dir};
 use crate::tools;
-use endat_gen::config::parse;
-use endat_gen::virtual_card::Door;
+use endat_card::Door;
+use endat_config::parse;
 use endat_sim::rng::Rng;
 use serde_json::Value;
 use std::fs;
@@ -32,7 +34,7 @@ struct View {
 impl View {
     fn new(name: &str, port: &str, more: &[&str]) -> Self {
         let dir = Dir::new(name);
-        let mut command = program::program();
+        let mut command = program::endat();
         let command = command.args(["view", "--port", port]).args(more);
         let (program, line) = begun(command.current_dir(&dir.0));
         let (_, url) = line.split_once("http://").expect(&line);
@@ -519,7 +521,7 @@ fn what_cannot_be_served_is_told_at_once() {
             "async_dsp",
         ),
     ] {
-        let output = Command::new(env!("CARGO_BIN_EXE_endat-gen"))
+        let output = program::endat()
             .arg("view")
             .args(&arguments)
             .output()
@@ -532,10 +534,20 @@ fn what_cannot_be_served_is_told_at_once() {
     }
 }
 
-/// In a browser that has come with the token, by keyboard and mouse, wide and narrow, light and dark; leaves its pictures for people to
-/// look at.
+/// In a browser that has come with the token: a live plot, what keys and the mouse do, no error.
 #[test]
 fn a_browser_shows_the_page_and_obeys_its_keys() {
+    in_a_browser("keys");
+}
+
+/// All parts of the page, wide and narrow, light and dark; leaves its pictures for people to look at.
+#[test]
+#[ignore = "slow: every part of the live page in a browser"]
+fn a_browser_shows_every_part_of_the_page_wide_and_narrow() {
+    in_a_browser("all");
+}
+
+fn in_a_browser(what: &str) {
     let check = "the live page is opened in a browser";
     let browser = match tools::has("google-chrome") && !tools::has("chromium") {
         true => "google-chrome",
@@ -546,20 +558,20 @@ fn a_browser_shows_the_page_and_obeys_its_keys() {
     {
         return;
     }
-    let dir = tools::folder("view");
-    let text = endat_gen::config::preset(SERVICE).unwrap();
+    let dir = tools::folder(&format!("view-{what}"));
+    let text = quick_text(SERVICE);
     let (before, line) = text.split_once("\n[line]").unwrap();
     let line = line.replacen("parts = []", "parts = [\"alignment\", \"margin\"]", 1);
     let project = parse("card.toml", &format!("{before}\n[line]{line}")).unwrap();
     let card = Served::new(project, || Door::tcp("127.0.0.1:0").unwrap());
     let more = ["--listen", "0.0.0.0:0", "--rehearse"];
-    let view = View::new("view-browser", &card.name, &more);
+    let view = View::new(&format!("view-browser-{what}"), &card.name, &more);
     let url = format!("http://{}/?token={}", view.address, view.token());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/view/browser.py");
     let output = Command::new("python3")
         .args([script, &url])
         .arg(&dir)
-        .arg(browser)
+        .args([browser, what])
         .output()
         .unwrap();
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();

@@ -16,7 +16,7 @@ pub struct Memory {
     pub clock: NetId,
     /// Word to read.
     pub read_address: NetId,
-    /// The word that stood at `read_address` at the last clock edge; starts at 0.
+    /// The word at `read_address` at the last clock edge; starts at 0.
     pub read_data: NetId,
     /// The write port; `None` if it is read-only.
     pub write: Option<WritePort>,
@@ -33,7 +33,7 @@ pub struct WritePort {
     pub enable: NetId,
     /// Word to write.
     pub address: NetId,
-    /// What to write.
+    /// Data to write.
     pub data: NetId,
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 pub enum Statement {
     /// Assigns `value` to the bits of `net` from `low_bit` upwards.
     Assign {
-        /// About it, and what comes behind it.
+        /// Comments of this statement.
         docs: Vec<String>,
         /// Target.
         net: NetId,
@@ -32,7 +32,7 @@ pub enum Statement {
     Case {
         /// About it.
         docs: Vec<String>,
-        /// What is compared.
+        /// Compared expression.
         subject: Expr,
         /// Constants of the subject's width, and what to execute.
         arms: Vec<(Expr, Vec<Statement>)>,
@@ -46,7 +46,7 @@ pub fn restricted(statements: &[Statement], set: &BTreeSet<NetId>) -> Vec<Statem
     parts.collect()
 }
 
-/// Hands on to the first of some statements what was written about one that they stand for.
+/// Moves the comments of a statement to the first of the statements that replace it.
 pub fn hand_on(docs: &[String], to: &mut [Statement]) {
     if let Some(first) = to.first_mut() {
         first.docs_mut().splice(0..0, docs.iter().cloned());
@@ -65,7 +65,7 @@ pub fn targets(statements: &[Statement]) -> BTreeSet<NetId> {
 }
 
 impl Statement {
-    /// What is written about it.
+    /// Comments of this statement.
     pub fn docs(&self) -> &[String] {
         match self {
             Statement::Assign { docs, .. }

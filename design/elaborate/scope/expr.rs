@@ -8,7 +8,7 @@ use rust_hdl::ast::{VerilogExpression as Ast, VerilogOp, VerilogOpUnary};
 
 type Result<T> = std::result::Result<T, ElaborateError>;
 
-/// What an expression of the kernel is: a signal value, or a Rust integer that takes the width of its context.
+/// Kind of a kernel expression: a signal value, or a Rust integer that takes the width of its context.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Typed(Expr),

@@ -6,7 +6,7 @@ use super::super::design::{
 use super::super::pieces::replaced;
 use super::known::{assign, known, meet, ways, Known, Values};
 
-/// The statements as they are where this is known; what they assign is known behind them.
+/// Keeps the statements if this is known; then their targets are known after them.
 pub(super) fn fold(
     module: &Module,
     statements: &[Statement],

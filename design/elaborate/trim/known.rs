@@ -1,4 +1,4 @@
-//! What is known of values before anything runs: bits that are the same in every cycle.
+//! Static knowledge of values: bits that are equal in every cycle.
 
 use super::super::design::{mask, BinaryOp, Expr, ExprKind, Module, NetId, Statement, UnaryOp};
 use super::super::execute::binary;
@@ -29,7 +29,7 @@ impl Known {
         (self.known & bits == bits).then_some(self.value & bits)
     }
 
-    /// What is known if it is one or the other.
+    /// Knowledge valid for both.
     fn or_else(self, other: Self) -> Self {
         let known = self.known & other.known & !(self.value ^ other.value);
         Self {
@@ -61,10 +61,10 @@ impl Known {
     }
 }
 
-/// What is known of the nets of a module; none = nothing has come there yet.
+/// Knowledge of the nets of a module; `None` = not computed yet.
 pub(super) type Values = Vec<Option<Known>>;
 
-/// What is known of it if it is one or the other.
+/// Knowledge valid for both.
 pub(super) fn either(one: Option<Known>, other: Option<Known>) -> Option<Known> {
     match (one, other) {
         (Some(one), Some(other)) => Some(one.or_else(other)),
@@ -72,7 +72,7 @@ pub(super) fn either(one: Option<Known>, other: Option<Known>) -> Option<Known> 
     }
 }
 
-/// What is known of an expression; none as long as it reads a net where nothing has come yet.
+/// Knowledge of an expression; `None` while it reads a net without a computed value.
 pub(super) fn known(module: &Module, expr: &Expr, values: &Values) -> Option<Known> {
     let of = |expr: &Expr| known(module, expr, values);
     let bits = match &expr.kind {
@@ -178,7 +178,7 @@ fn two(op: BinaryOp, [a, b]: [Known; 2], [width_bits, other_bits]: [usize; 2]) -
     }
 }
 
-/// What `net` holds once `bits` have been put into it from `low_bit` upwards.
+/// Content of `net` after `bits` have been written to it from `low_bit` upwards.
 pub(super) fn assign(
     values: &mut Values,
     net: NetId,
@@ -246,7 +246,7 @@ pub(super) fn run(module: &Module, statements: &[Statement], values: &mut Values
     }
 }
 
-/// What a statement's targets hold behind it, out of what they hold behind each block that may be taken; without one nothing has come there.
+/// Values of a statement's targets after it, from their values after each possible block; without a possible block there are none.
 pub(super) fn meet(statement: &Statement, after: &[Values], values: &mut Values) {
     statement.for_each_target(&mut |net, _, _| {
         let ends = after.iter().map(|values| values[net]);

@@ -1,4 +1,4 @@
-//! What of a design comes to its ports, or into what is proved about it.
+//! Parts of a design that reach its ports or its properties.
 
 use super::super::design::*;
 use super::super::finish::order_modules;
@@ -6,7 +6,7 @@ use super::super::plan::{dependencies, Dependencies};
 use super::known::Values;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is used of a module.
+/// Used parts of a module.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Live {
     /// Nets whose value matters.
@@ -21,11 +21,11 @@ impl Live {
     }
 }
 
-/// Who drives the nets of a module.
+/// Drivers of the nets of a module.
 struct Drivers {
-    /// Of each net, what its process reads for it.
+    /// For each net, the nets that its process reads for it.
     reads: Dependencies,
-    /// Of each net that a child drives: instance and port.
+    /// For each net with a child as driver: instance and port.
     children: BTreeMap<NetId, (usize, usize)>,
 }
 
@@ -58,7 +58,7 @@ impl Drivers {
     }
 }
 
-/// What is used of each module, from the outputs of the top and what is proved on.
+/// Used parts of each module, starting from the outputs of the top and the properties.
 fn live(design: &Design, facts: &[Values]) -> Vec<Live> {
     let drivers: Vec<Drivers> = design.modules.iter().map(Drivers::new).collect();
     let mut all = vec![Live::default(); design.modules.len()];
@@ -110,7 +110,7 @@ fn follow(
                 all[child].nets.insert(inside);
             }
         }
-        // What live children read.
+        // Nets read by live children.
         for index in all[id].instances.clone() {
             let instance = &module.instances[index];
             let child = &design.modules[instance.module];

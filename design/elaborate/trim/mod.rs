@@ -1,14 +1,14 @@
-//! What is off is not there: a design without what its configuration never uses.
+//! Removes the parts of a design that its configuration never uses.
 //!
 //! ```text
 //! start values, constants, ties --(until nothing changes)--> bits that never change --> branches never taken, registers that never move
 //! outputs of the top, properties --(until nothing changes)--> nets, ports, instances, modules that matter
 //! ```
 //!
-//! At its ports the design does the same in every cycle; the engines run the whole one, so every comparison with emitted Verilog compares
-//! the two. Bits are followed through all modules at once, beginning with registers at their start values; what a module knows is what is
-//! so in each of its instances. A register is known as a whole or not at all, so whatever the others hold, the design goes on from
-//! there as it would have. Named constants keep their names, but for flags, which are only there to be decided.
+//! The ports of the design do the same in every cycle. The engines run the untrimmed design, so every comparison with emitted Verilog compares
+//! the two. Bits are followed through all modules at once, beginning with registers at their start values; the knowledge of a module holds
+//! in each of its instances. A register is known completely or not at all, so for any contents of the others the design continues
+//! as before. Named constants keep their names, except flags, which only select logic.
 
 mod fold;
 mod known;
@@ -40,7 +40,7 @@ impl Module {
         values[net]?.whole(self.nets[net].width_bits)
     }
 
-    /// Nets whose names stand in what is proved about the module.
+    /// Nets that the module's properties name.
     fn named_in_properties(&self) -> BTreeSet<NetId> {
         let words = words(&self.properties);
         let nets = self.nets.iter().enumerate();
@@ -50,7 +50,7 @@ impl Module {
     }
 }
 
-/// What is known of every net of every module, in every cycle.
+/// Knowledge of every net of every module, valid in every cycle.
 fn facts(design: &Design) -> Vec<Values> {
     let empty = |module: &Module| vec![None; module.nets.len()];
     let mut facts: Vec<Values> = design.modules.iter().map(empty).collect();

@@ -1,4 +1,4 @@
-//! Where everything stands in the state of a running design: one array of 64-bit words.
+//! Layout of the state of a running design: one array of 64-bit words.
 
 use crate::engine::form::{Commit, Form};
 
@@ -88,15 +88,15 @@ impl Layout {
         &self.marks[net]
     }
 
-    /// The first word of a net, if it has a value of its own.
+    /// The first word of a net, if it is stored.
     pub fn slot(&self, net: usize) -> Option<usize> {
         self.slots[net]
     }
 
-    /// The first word of a net that has a value of its own.
+    /// The first word of a stored net.
     ///
     /// # Panics
-    /// If it has none: what is read or driven anywhere is stored.
+    /// If it is not stored; every net that is read or driven anywhere is.
     pub fn place(&self, net: usize) -> usize {
         self.slots[net].unwrap_or_else(|| unreachable!("net {net} is not stored"))
     }

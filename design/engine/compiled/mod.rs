@@ -14,7 +14,7 @@ pub use native::has_native_code;
 use native::Native;
 use std::sync::Arc;
 
-/// What executes the form.
+/// Executor of the form.
 #[derive(Clone)]
 enum Code {
     Native(Native),
@@ -42,7 +42,7 @@ pub struct Saved {
     memories: Vec<Vec<u128>>,
 }
 
-/// What a register or port did.
+/// Activity of a register or port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NetCoverage {
     /// Hierarchical name.
@@ -216,7 +216,7 @@ impl Compiled {
         self.is_settled = false;
     }
 
-    /// What registers and ports did so far, if [`Instruments::coverage`] is built in.
+    /// Activity of registers and ports so far, if [`Instruments::coverage`] is built in.
     pub fn coverage(&mut self) -> Vec<NetCoverage> {
         let form = self.form.clone();
         let covered = form.instruments.covered.iter();

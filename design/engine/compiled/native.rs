@@ -34,7 +34,7 @@ pub(in crate::engine) struct Code<'a, 'f> {
 }
 
 impl Code<'_, '_> {
-    /// What accesses to the state may assume: they never fault, and are not aligned to more than a word.
+    /// Flags of accesses to the state: they never fault, and are aligned to at most a word.
     fn flags() -> MemFlagsData {
         MemFlagsData::new().with_notrap()
     }
@@ -168,16 +168,16 @@ impl Drop for CodeMemory {
     #[allow(unsafe_code)]
     fn drop(&mut self) {
         if let Some(module) = self.0.get_mut().ok().and_then(Option::take) {
-            // SAFETY: the only pointers into the code are in `Native`, each beside a reference to this.
+            // SAFETY: the only pointers into the code are in `Native`, each together with a reference to this.
             unsafe { module.free_memory() };
         }
     }
 }
 
-/// Whether there is native code on this machine; if not, why: engines then run in an interpreter.
+/// Checks for native code on this machine; without it engines use an interpreter.
 ///
 /// # Errors
-/// What the code generator says.
+/// The reason from the code generator.
 pub fn has_native_code() -> Result<(), String> {
     cranelift_native::builder().map(drop).map_err(str::to_owned)
 }
@@ -186,7 +186,7 @@ impl Native {
     /// Compiles a form.
     ///
     /// # Errors
-    /// What the code generator says, if it does not know this platform.
+    /// The error of the code generator, if it does not support this platform.
     pub fn compile(form: &Form, layout: &Layout, lower: &dyn Lower) -> Result<Self, String> {
         let mut flags = settings::builder();
         let set = [

@@ -125,7 +125,7 @@ impl Changes {
     }
 }
 
-/// What a node became.
+/// Result of a node.
 #[derive(Clone, Copy)]
 struct Computed {
     /// The number, with zeros above its width.

@@ -5,7 +5,7 @@ use crate::elaborate::{mask, BinaryOp, Expr, ExprKind, Statement, UnaryOp};
 use crate::engine::flat::{Flat, FlatProcess};
 use std::collections::BTreeMap;
 
-/// What a net turned out to be.
+/// Kind of a net.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Known {
     /// Something that changes.
@@ -49,7 +49,7 @@ impl Builder<'_> {
         }
     }
 
-    /// What the nets are after a block, with everything else left as it was.
+    /// Values of the nets after a block, without changing anything else.
     fn branch(&mut self, statements: &[Statement]) -> BTreeMap<usize, NodeId> {
         let before = self.values.clone();
         self.block(statements);

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 /// Index of a node in its [`Graph`].
 pub type NodeId = usize;
 
-/// What a node computes. Operands have the width of the result unless said otherwise; bits above the width are 0.
+/// Operation of a node. Operands have the width of the result unless stated otherwise; bits above the width are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// A number.
@@ -89,7 +89,7 @@ impl Op {
 /// A node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Node {
-    /// What it computes.
+    /// Operation.
     pub op: Op,
     /// Width of the result in bits.
     pub width_bits: usize,
@@ -146,7 +146,7 @@ impl Graph {
         id
     }
 
-    /// What is known without looking at the values.
+    /// Simplification that does not depend on the values.
     fn simpler(&mut self, op: &Op, width_bits: usize) -> Option<NodeId> {
         let ones = mask(width_bits);
         let same = |a: NodeId, b: NodeId| a == b;
@@ -157,7 +157,7 @@ impl Graph {
             },
             Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) => {
                 if let (Some(_), None) = (self.as_constant(a), self.as_constant(b)) {
-                    // Numbers stand on the right.
+                    // Numbers are the right operand.
                     return Some(self.add(commuted(op), width_bits));
                 }
                 let number = self.as_constant(b);
@@ -227,7 +227,7 @@ fn commuted(op: &Op) -> Op {
     }
 }
 
-/// What an operator gives for numbers, before the result is cut to its width; `width_of` tells the width of its operands.
+/// Result of an operator for numbers, before it is cut to its width; `width_of` returns the width of its operands.
 pub fn evaluate(op: &Op, v: &[u128], width_of: impl Fn(NodeId) -> usize) -> u128 {
     let shift = |a: u128, by: u128, f: fn(u128, u32) -> Option<u128>| {
         let by = u32::try_from(by).ok();

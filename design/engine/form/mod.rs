@@ -1,7 +1,7 @@
-//! What engines run: segments of pure expressions and groups of registers, with who reads what.
+//! Executable form: segments of pure expressions and groups of registers, with their readers.
 //!
 //! A cycle is: settle (run every segment one of whose nets has changed, in order), then commit (load every register of each
-//! group whose inputs have changed). What has not changed is not computed again, and the result is the same: a segment gives
+//! group whose inputs have changed). Unchanged parts are not computed again, and the result is the same: a segment gives
 //! the same values for the same nets, and a register that was loaded holds its input.
 //!
 //! On the way here the hierarchy is gone, numbers are folded, nets that only rename others are replaced, and logic that
@@ -19,7 +19,7 @@ use crate::elaborate::Design;
 use build::Known;
 use std::collections::BTreeMap;
 
-/// What must stay observable besides the outputs.
+/// Nets that must stay observable in addition to the outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Keep {
     /// Only the outputs: the fastest.
@@ -70,9 +70,9 @@ pub(super) struct Form {
     /// All registers that were not dropped.
     pub registers: Vec<FlatRegister>,
     pub falling: Vec<Falling>,
-    /// Which nets have a value of their own.
+    /// Stored nets.
     pub is_stored: Vec<bool>,
-    /// What each net is, if it has none of its own: another net, or a number.
+    /// Value of each net that is not stored: another net, or a number.
     known: Vec<Known>,
     /// For each net the segments and the commits to run when it changes.
     pub readers: Vec<Vec<usize>>,
@@ -324,8 +324,8 @@ fn inputs_of_state(flat: &Flat) -> Vec<bool> {
     is_input
 }
 
-/// Gives inputs of registers and memories that are outputs of others a net of their own, so that the order in which they are
-/// loaded does not matter. Pairs of a net and its copy.
+/// Gives separate nets to inputs of registers and memories that are outputs of others, so that the loading order
+/// does not matter. Returns pairs of a net and its copy.
 fn separate_inputs(flat: &mut Flat) -> Vec<(usize, usize)> {
     let mut is_state = vec![false; flat.nets.len()];
     flat.registers.iter().for_each(|r| is_state[r.q] = true);

@@ -60,7 +60,7 @@ impl BitSegment {
         bits
     }
 
-    /// Simplification leaves gates behind that nothing reads.
+    /// Removes gates that simplification has left without readers.
     fn drop_unused(&mut self) {
         let mut is_used = vec![false; self.gates.len()];
         for (_, _, bit) in &self.writes {
@@ -183,7 +183,7 @@ impl BitSegment {
         a.iter().map(|bit| self.not(*bit)).collect()
     }
 
-    /// All of the bits, as a tree.
+    /// AND of the bits, as a tree.
     fn all(&mut self, mut bits: Vec<Bit>) -> Bit {
         while bits.len() > 1 {
             bits = bits

@@ -11,7 +11,7 @@ use cranelift_codegen::ir::{InstBuilder, Type, Value};
 pub(super) struct Bits<'a> {
     pub form: &'a Form,
     pub segments: &'a [BitSegment],
-    /// What holds one bit of all lanes.
+    /// Machine type that holds one bit of all lanes.
     pub kind: Type,
 }
 

@@ -8,7 +8,7 @@ use crate::printing::{variant_name, with_comment};
 use crate::verilog::text::{comment, vector, INDENT, MARK};
 
 impl ModulePrinter<'_> {
-    /// What is named in the logic, with what it is.
+    /// Named constants of the logic, with their meaning.
     pub(super) fn constants(&self) -> String {
         let mut out = String::new();
         for parameter in self.scope.parameters() {

@@ -24,7 +24,7 @@ pub(in crate::verilog) fn literal(value: u128, width_bits: usize) -> String {
     }
 }
 
-/// A sized literal of which each bit means something of its own.
+/// A sized literal in which each bit has a separate meaning.
 pub(in crate::verilog) fn bits(value: u128, width_bits: usize) -> String {
     format!("{width_bits}'h{value:x}")
 }

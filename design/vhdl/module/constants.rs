@@ -5,7 +5,7 @@ use crate::printing::{with_comment, INDENT};
 use crate::vhdl::text::{bits, comment, named_literal, plain, subtype, MARK};
 
 impl ModulePrinter<'_> {
-    /// What is named in the logic, with what it is.
+    /// Named constants of the logic, with their meaning.
     pub(super) fn constants(&self) -> String {
         let mut out = String::new();
         for parameter in self.scope.parameters() {

@@ -6,7 +6,7 @@ use crate::printing::INDENT;
 use crate::vhdl::text::{comment, subtype};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What keeps a synchroniser stage a flip-flop: Vivado and XST, then others.
+/// Attributes that keep a synchroniser stage a flip-flop: Vivado and XST, then others.
 const SYNCHRONISER: [(&str, &str); 3] = [
     ("ASYNC_REG", "TRUE"),
     ("SHREG_EXTRACT", "NO"),
@@ -123,8 +123,7 @@ impl ModulePrinter<'_> {
         if stages.is_empty() {
             return String::new();
         }
-        let mut out =
-            format!("\n{INDENT}-- Stages of synchronisers stay flip-flops of their own.\n");
+        let mut out = format!("\n{INDENT}-- Synchroniser stages remain separate flip-flops.\n");
         for (attribute, value) in SYNCHRONISER {
             out.push_str(&format!("{INDENT}attribute {attribute} : string;\n"));
             for stage in &stages {

@@ -223,7 +223,7 @@ impl ModulePrinter<'_> {
                     "shift_right"
                 };
                 match is_bit {
-                    // One bit is there, or shifted out.
+                    // One bit is selected, or shifted out.
                     true => {
                         let left = self.value(left, Context::Alone);
                         Text::atom(format!("bit_at({name}(resize({left}, 2), {at}), 0)"))
@@ -257,7 +257,7 @@ impl ModulePrinter<'_> {
             }
             _ => self.value_text(expr, context).within(levels),
         };
-        // Of two literals one has to say what it is.
+        // One of two literals needs an explicit type.
         let first = match (are_both_known, context) {
             (true, Context::Alone) => Context::Alone,
             _ => Context::Operand,
@@ -440,7 +440,7 @@ fn sign(op: BinaryOp) -> &'static str {
     }
 }
 
-/// What a case compares with.
+/// Value of a case choice.
 pub(super) fn choice(value: u128, width_bits: usize) -> String {
     match width_bits {
         1 => format!("'{value}'"),

@@ -1,7 +1,7 @@
 /**
  * @file bare_metal.c
- * A card that is mapped into memory (AXI4-Lite, APB, Wishbone), no operating system: a position, a parameter, and an encoder whose plug
- * is pulled and put back.
+ * A memory-mapped card (AXI4-Lite, APB, Wishbone) without an operating system: reads positions and a parameter, and handles an encoder that is unplugged
+ * and plugged in again.
  *
  *   cc -std=c99 -DENDAT_BASE=MY_CARD_BASE_ADDRESS -DENDAT_HASH=MY_CARD_CARD_CONFIGURATION_HASH_RESET -include my_card_registers.h ...
  */
@@ -15,12 +15,12 @@
 #define ENDAT_HASH 0u /* any card */
 #endif
 
-/* Of the board: a counter of microseconds, and what becomes of a position. Replace both. */
+/* Board functions: a microsecond counter, and a consumer of positions. Replace both. */
 uint32_t board_us(void);
 void board_take_position(uint32_t channel, int64_t position, bool is_good);
 void board_tell(const char *what, const char *text);
 
-/* A word of the card: its bus counts bytes. Memory of a device: no cache, no reordering. */
+/* A word of the card on a byte-addressed bus. Device memory: no cache, no reordering. */
 static volatile uint32_t *word_at(void *context, uint32_t word_address)
 {
     return (volatile uint32_t *)context + word_address;
@@ -44,11 +44,11 @@ static uint32_t now_us(void *context)
     return board_us();
 }
 
-/* Everything that is known of the encoder, once. */
+/* Reads the data of the encoder once. */
 static void look_at_the_encoder(const endat_card *card, uint32_t channel)
 {
     endat_answer answer;
-    /* Word 13 of the encoder's memory: how many bits its position has. */
+    /* Word 13 of the encoder's memory: number of position bits. */
     const endat_error error = endat_read_parameter(card, channel, 0xA1u, 0x0Du, 500u, &answer);
 
     if (error == ENDAT_ERROR_REFUSED) {
@@ -56,7 +56,7 @@ static void look_at_the_encoder(const endat_card *card, uint32_t channel)
     } else if ((error != ENDAT_OK) && (error != ENDAT_ERROR_PART)) {
         board_tell("parameter", endat_error_text(error));
     } else {
-        /* answer.data has it, on a card with requests. */
+        /* answer.data has the word, on a card with requests. */
     }
 }
 
@@ -79,7 +79,7 @@ static void step(const endat_card *card)
         if (!is_good && (result->cause != 0u)) {
             board_tell(endat_cause_text(result->cause), endat_cause_remedy(result->cause));
         }
-        /* The card goes on by itself when the plug is back; until then its triggers are lost. */
+        /* The card recovers automatically when the encoder is plugged in; until then its triggers are lost. */
         if (!is_good && (endat_status(card, n) == ENDAT_ERROR_UNPLUGGED)) {
             board_tell("encoder", endat_error_text(ENDAT_ERROR_UNPLUGGED));
             if (endat_wait_ready(card, n, 5000u) == ENDAT_OK) {
@@ -89,7 +89,7 @@ static void step(const endat_card *card)
     }
 }
 
-/** Never comes back, but where there is no card. */
+/** Returns only if no card is found. */
 void endat_run(void)
 {
     const endat_link link = {(void *)(uintptr_t)ENDAT_BASE, read_word, write_word, NULL, now_us, NULL};

@@ -1,7 +1,7 @@
 /**
  * @file freertos.c
- * A card on SPI below FreeRTOS: one task triggers and reads, another one reads a parameter. A mutex keeps them apart, since one master
- * talks to a card at a time.
+ * A card on SPI with FreeRTOS: one task triggers and reads, another one reads a parameter. A mutex serialises them, because only one master
+ * may access a card at a time.
  */
 #include "FreeRTOS.h"
 #include "semphr.h"
@@ -11,7 +11,7 @@
 #include "endat_transports.h"
 #include <stddef.h>
 
-/* Of the board: mode 0, chip select low from the first byte to the last; 0 = done. */
+/* Board function: mode 0, chip select low from the first byte to the last; 0 = done. */
 int board_spi_transfer(const uint8_t *sent, uint8_t *received, uint32_t count);
 void board_take_position(uint32_t channel, int64_t position, bool is_good);
 
@@ -27,7 +27,7 @@ static endat_error transfer(void *context, const uint8_t *sent, uint8_t *receive
     return (board_spi_transfer(sent, received, count) == 0) ? ENDAT_OK : ENDAT_ERROR_LINK;
 }
 
-/* Whole ticks: others run meanwhile. */
+/* Whole ticks: other tasks run meanwhile. */
 static void wait_us(void *context, uint32_t us)
 {
     (void)context;
@@ -62,7 +62,7 @@ endat_error board_endat_open(board_endat *board, uint32_t hash)
     return error;
 }
 
-/** A task: triggers in each period, and takes what the trigger before has brought. */
+/** A task: triggers in each period, and reads the result of the previous trigger. */
 void board_endat_task(void *argument)
 {
     board_endat *const board = (board_endat *)argument;
@@ -85,7 +85,7 @@ void board_endat_task(void *argument)
     }
 }
 
-/** In another task: a word of the encoder's memory, while positions go on. */
+/** In another task: reads a word of the encoder's memory, while positions continue. */
 endat_error board_endat_parameter(board_endat *board, uint32_t channel, uint32_t command, uint32_t address, endat_answer *answer)
 {
     endat_request request;

@@ -1,10 +1,10 @@
 /**
  * @file linux_uio.c
- * A card on the bus of a system on chip, from user space over UIO: who it is, a parameter, and positions for as long as they are good.
- * On a desk the same program takes the card that endat-gen simulates.
+ * A card on the bus of a system on chip, from user space over UIO: identification, a parameter, and positions as long as they are good.
+ * On a PC the same program uses the card that endat-gen simulates.
  *
  *   cc -std=c99 -O2 -I.. -o endat_uio linux_uio.c ../endat*.c && ./endat_uio /dev/uio0
- *   endat-gen card --preset artinchip_endat_if --tcp 127.0.0.1:7700 & ./endat_uio tcp 127.0.0.1 7700
+ *   endat card --preset artinchip_endat_if --tcp 127.0.0.1:7700 & ./endat_uio tcp 127.0.0.1 7700
  */
 #define _POSIX_C_SOURCE 200809L
 #include <fcntl.h>
@@ -21,10 +21,10 @@
 #include "endat.h"
 #include "endat_transports.h"
 
-/** How much slower than a card's the time of a simulated one may run; its `card` says at the beginning how it does. */
-#define SIMULATED_SLOWER 100u
+/** Ratio of real time to the time of a simulated card, at most, on a busy machine; its `card` command prints the ratio at the start. */
+#define SIMULATED_SLOWER 1000u
 
-/** 1 with a card of silicon. */
+/** 1 with real hardware. */
 static uint32_t slower = 1u;
 
 static endat_error read_word(void *context, uint32_t word_address, uint32_t *value)
@@ -45,7 +45,7 @@ static uint32_t now_us(void *context)
 
     (void)context;
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    /* All limits are of this time: with a slow card they last longer. */
+    /* All limits use this time: with a slow card they last longer. */
     return (uint32_t)(((uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u) / slower);
 }
 
@@ -57,7 +57,7 @@ static void wait_us(void *context, uint32_t us)
     (void)nanosleep(&span, NULL);
 }
 
-/** Until the socket gives up a byte, or nobody is at its other end. */
+/** Until the socket delivers a byte, or the other end has closed it. */
 static endat_error receive_bytes(void *context, uint8_t *bytes, uint32_t count)
 {
     const int file = *(const int *)context;
@@ -78,7 +78,7 @@ static endat_error send_bytes(void *context, const uint8_t *bytes, uint32_t coun
     return (send(*(const int *)context, bytes, count, MSG_NOSIGNAL) == (ssize_t)count) ? ENDAT_OK : ENDAT_ERROR_LINK;
 }
 
-/** A socket at a simulated card, -1 if there is none. */
+/** A socket to a simulated card, -1 if there is none. */
 static int connect_to(const char *host, const char *port)
 {
     const struct addrinfo wanted = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
@@ -149,7 +149,7 @@ static endat_error run(endat_card *card)
     return error;
 }
 
-/** Opens the card behind a link, and shows it; the exit code. */
+/** Opens the card of a link, and prints it; returns the exit code. */
 static int show_card(const char *name, const endat_link *link)
 {
     endat_card card;
@@ -164,7 +164,7 @@ static int show_card(const char *name, const endat_link *link)
     return (error == ENDAT_OK) ? 0 : 1;
 }
 
-/** The simulated card behind a TCP port, whatever its bus is. */
+/** The simulated card at a TCP port, with any bus. */
 static int over_tcp(const char *host, const char *port)
 {
     int file = connect_to(host, port);
@@ -173,7 +173,7 @@ static int over_tcp(const char *host, const char *port)
     int code;
 
     if (file < 0) {
-        fprintf(stderr, "tcp %s %s: no card listens there\n", host, port);
+        fprintf(stderr, "tcp %s %s: no card at this port\n", host, port);
         return 2;
     }
     slower = SIMULATED_SLOWER;

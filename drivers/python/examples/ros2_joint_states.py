@@ -3,8 +3,8 @@
     pip install cyclonedds
     python ros2_joint_states.py tcp:127.0.0.1:7700 --joint shoulder --joint elbow
 
-and on a machine with ROS 2 ``ros2 topic echo /joint_states``. Of a robot's ros2_control they are state interfaces by the package
-joint_state_topic_hardware_interface, in its URDF:
+and on a machine with ROS 2 ``ros2 topic echo /joint_states``. For a robot's ros2_control the package
+joint_state_topic_hardware_interface makes them state interfaces, in its URDF:
 
     <ros2_control name="encoders" type="system">
       <hardware>
@@ -14,8 +14,8 @@ joint_state_topic_hardware_interface, in its URDF:
       <joint name="shoulder"><state_interface name="position"/><state_interface name="velocity"/></joint>
     </ros2_control>
 
-Positions are in radians or metres, from the encoder's zero, turns counted on. A joint whose last trigger brought no position is left out of
-that message, and its cause is told on stderr: whoever listens sees that it is old, and never a position that is held.
+Positions are in radians or metres, from the encoder's zero, turns unwrapped. A joint whose last trigger brought no position is left out of
+that message, and its cause is printed on stderr. So subscribers see an outdated joint, never a held position.
 """
 
 import argparse
@@ -36,7 +36,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 from numpy.typing import NDArray
 
-# What ROS 2 calls its types and topics on the wire: a type ends with an underscore in a module dds_, a topic begins with rt/.
+# Names of types and topics of ROS 2 on the wire: a type ends with an underscore in a module dds_, a topic begins with rt/.
 
 
 @dataclass
@@ -63,7 +63,7 @@ class JointState(IdlStruct, typename="sensor_msgs.msg.dds_.JointState_"):
     effort: types.sequence[types.float64]
 
 
-#: What ROS 2 asks for unless it is told otherwise: reliable, the last ten, in the plain form of CDR.
+#: Default quality of service of ROS 2: reliable, the last ten, in the plain form of CDR.
 QOS = Qos(
     Policy.Reliability.Reliable(duration(milliseconds=100)),
     Policy.Durability.Volatile,
@@ -71,7 +71,7 @@ QOS = Qos(
     Policy.DataRepresentation(use_cdrv0_representation=True),
 )
 
-#: In SI units, as ROS has them.
+#: In SI units, as in ROS.
 SI = {"deg": math.pi / 180, "mm": 1e-3, "counts": 1.0}
 
 
@@ -88,7 +88,7 @@ class Joint:
         if len(at) == 0:
             return None
         positions = channel.unwrapped()[at]
-        # What the encoder does not count itself is counted on from the block before.
+        # Unwrap what the encoder does not count, from the previous block.
         if channel.wraps_at is not None and self._position is not None:
             period = channel.wraps_at * (channel.turns_counted or 1)
             positions = np.unwrap(np.append(self._position, positions), period=period)[1:]
@@ -124,7 +124,7 @@ def main() -> None:
     parser.add_argument("--topic", default="/joint_states")
     parser.add_argument("--domain", type=int, default=0, help="ROS_DOMAIN_ID")
     parser.add_argument("--block", type=int, default=100, help="triggers of a message")
-    parser.add_argument("--messages", type=int, help="end after so many")
+    parser.add_argument("--messages", type=int, help="end after this number of messages")
     arguments = parser.parse_args()
     participant = DomainParticipant(arguments.domain)
     topic = Topic(participant, "rt" + arguments.topic, JointState, qos=QOS)

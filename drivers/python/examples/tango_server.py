@@ -47,7 +47,7 @@ class EndatCard(Device):
         return self._card.read()[channel]
 
     def position(self, attr: Attribute | WAttribute) -> tuple[float, float, AttrQuality]:
-        """A position that its last trigger did not bring is told as invalid."""
+        """A position without a fresh result is reported as invalid."""
         reading = self._reading(attr)
         if reading.position is None:
             return 0.0, time.time(), AttrQuality.ATTR_INVALID
@@ -57,7 +57,7 @@ class EndatCard(Device):
     def cause(self, attr: Attribute | WAttribute) -> str:
         return self._reading(attr).cause
 
-    @attribute(dtype=(str,), max_dim_x=8, doc="ID and serial number of each encoder, where the card reads them")
+    @attribute(dtype=(str,), max_dim_x=8, doc="ID and serial number of each encoder, if the card reads them")
     def encoders(self) -> list[str]:
         return [f"{plate.id} {plate.serial}" if plate else "" for plate in self._card.encoders()]
 

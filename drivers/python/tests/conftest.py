@@ -1,4 +1,4 @@
-"""What the tests share."""
+"""Fixtures of the tests."""
 
 import os
 from pathlib import Path
@@ -8,11 +8,11 @@ import pytest
 
 @pytest.fixture(scope="session")
 def service_file() -> Path:
-    """A card with a service, at a clock that is simulated sooner than the preset's: the suite makes it."""
+    """A card with a service, with a clock that simulates faster than the preset's; the suite generates it."""
     return Path(os.environ["ENDAT_SERVICE"])
 
 
 @pytest.fixture(scope="session")
 def service(service_file: Path) -> str:
-    """Its port."""
+    """Port of that card."""
     return f"virtual:{service_file}"

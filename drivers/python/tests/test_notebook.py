@@ -1,4 +1,4 @@
-"""Every notebook runs from its first cell to its last, with what it says in words beside it."""
+"""Every notebook runs from its first cell to its last, as its text describes."""
 
 import json
 from pathlib import Path
@@ -12,7 +12,7 @@ NOTEBOOKS = sorted((Path(__file__).parent.parent / "examples").glob("*.ipynb"))
 
 
 def run(path: Path, port: str, shown: int, recorded: int) -> None:
-    """Runs a notebook at a port; with so many rows that it shows and records, instead of 600 and 500."""
+    """Runs a notebook at a port; with these numbers of shown and recorded rows, instead of 600 and 500."""
     matplotlib.use("Agg")
     names: dict[str, object] = {}
     text = path.read_text()

@@ -1,4 +1,4 @@
-"""The example for ROS 2: messages on the wire, taken by another participant and read by a reader of ROS's own format."""
+"""The example for ROS 2: messages on the wire, received by another participant and decoded by a reader of the ROS format."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ EXAMPLE = Path(__file__).parent.parent / "examples" / "ros2_joint_states.py"
 
 pytest.importorskip("cyclonedds")
 rosbags = pytest.importorskip("rosbags.typesys")
-#: No other test's, and hardly a robot's.
+#: Used by no other test, and hardly by a robot.
 DOMAIN = 97
-#: On this machine alone, whatever networks it has.
+#: On this machine only, with any networks.
 LOOPBACK = """<CycloneDDS><Domain><General>
 <Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces><AllowMulticast>false</AllowMulticast>
 </General><Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
@@ -34,7 +34,7 @@ def example() -> Any:
     spec = importlib.util.spec_from_file_location("ros2_joint_states", EXAMPLE)
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
-    # Dataclasses look their module up.
+    # Dataclasses look up their module.
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
     return module
@@ -43,7 +43,7 @@ def example() -> Any:
 def test_another_participant_takes_joints_of_the_card_in_radians(
     example: Any, service: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Catches another name of topic or type, another unit, and joints in another order."""
+    """Catches a wrong topic, type or unit, and joints in the wrong order."""
     from cyclonedds.domain import DomainParticipant
     from cyclonedds.sub import DataReader, Subscriber
     from cyclonedds.topic import Topic
@@ -57,10 +57,12 @@ def test_another_participant_takes_joints_of_the_card_in_radians(
     with subprocess.Popen([*command, "--joint", "shoulder", "--joint", "elbow"]) as node:
         taken: list[Any] = []
         end = time.monotonic() + 120
-        while len(taken) < 5 and time.monotonic() < end and node.poll() is None:
-            taken += reader.take(10)
-            time.sleep(0.05)
-        node.terminate()
+        try:
+            while len(taken) < 5 and time.monotonic() < end and node.poll() is None:
+                taken += reader.take(10)
+                time.sleep(0.05)
+        finally:
+            node.terminate()
     assert len(taken) >= 5, node.returncode
     for message in taken:
         assert list(message.name) == ["shoulder", "elbow"]
@@ -73,7 +75,7 @@ def test_another_participant_takes_joints_of_the_card_in_radians(
 
 
 def test_the_bytes_are_those_of_a_joint_state(example: Any) -> None:
-    """Catches a field in another place: the reader has the definitions of ROS 2 itself."""
+    """Catches a misplaced field: the reader has the definitions of ROS 2."""
     stamp = example.Time(1_700_000_000, 5)
     message = example.JointState(example.Header(stamp, "base"), ["a", "elbow"], [1.5, -2.25], [0.5, math.inf], [])
     raw = message.serialize(use_version_2=False)

@@ -1,4 +1,4 @@
-"""The example for Tango, as a device that a client asks."""
+"""The example for Tango, as a device with a client."""
 
 import importlib.util
 from pathlib import Path
@@ -13,7 +13,7 @@ context = pytest.importorskip("tango.test_context")
 
 
 def device(port: str) -> Any:
-    """The example with a card at this port, in a process of its own."""
+    """The example with a card at this port, in a separate process."""
     spec = importlib.util.spec_from_file_location("tango_server", EXAMPLE)
     assert spec and spec.loader
     server = importlib.util.module_from_spec(spec)
@@ -22,7 +22,7 @@ def device(port: str) -> Any:
 
 
 def test_a_client_of_tango_reads_positions_and_the_memory_of_encoders(service: str) -> None:
-    """Catches an attribute without unit, a position that is told as good and is none, and a call that the package does not have any more."""
+    """Catches an attribute without unit, a missing position reported as good, and a call that the package no longer has."""
     with device(service) as card:
         card.set_timeout_millis(60_000)
         assert card.state() == tango.DevState.ON
@@ -33,7 +33,7 @@ def test_a_client_of_tango_reads_positions_and_the_memory_of_encoders(service: s
             assert card.read_attribute(f"cause_{channel}").value == "none"
         plates = card.read_attribute("encoders").value
         assert len(plates) == 2 and all(plates)
-        # The low byte of word 0x0D of MRS code 0xA1: how many clocks, so how many bits, a position has.
+        # The low byte of word 0x0D of MRS code 0xA1: number of clocks, and so of bits, of a position.
         assert card.read_parameter([0, 0xA1, 0x0D]) & 0xFF == 29
         with pytest.raises(tango.DevFailed, match="channel = 7"):
             card.read_parameter([7, 0xA1, 0x0D])

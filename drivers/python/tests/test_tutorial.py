@@ -13,7 +13,7 @@ PORT = "virtual:s6_two_channel_service"
 
 
 def follow(port: str, rows: int, capsys: pytest.CaptureFixture[str]) -> None:
-    """Runs the program at a port, with so many rows instead of 500."""
+    """Runs the program at a port, with this number of rows instead of 500."""
     found = re.search(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
     assert found and found[1].count(PORT) == 1 and found[1].count('"angles.h5", 500)') == 1
     program = found[1].replace(PORT, port).replace('"angles.h5", 500)', f'"angles.h5", {rows})')
@@ -25,7 +25,7 @@ def follow(port: str, rows: int, capsys: pytest.CaptureFixture[str]) -> None:
 def test_the_tutorial_records_what_others_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], service: str
 ) -> None:
-    """Catches a call on the page that has another name now, and a file without units: with a quick card."""
+    """Catches a renamed call on the page, and a file without units: with a quick card."""
     monkeypatch.chdir(tmp_path)
     follow(service, 60, capsys)
 

@@ -12,7 +12,7 @@ mod told;
 
 pub use subject::{in_channel, CardSubject};
 
-use crate::error::GenError;
+use endat_console::error::CommandError;
 use endat_hdl::card::config_ring::RING_WORDS;
 use endat_hdl::config::CardConfig;
 use endat_hdl::endat::service::map::word;
@@ -348,11 +348,16 @@ pub struct CardUpsets {
 
 impl CardUpsets {
     /// Upsets of registers [that are asked for](is_asked).
-    pub fn new(subject: CardSubject, draw: Draw, seed: u64, only: &str) -> Result<Self, GenError> {
+    pub fn new(
+        subject: CardSubject,
+        draw: Draw,
+        seed: u64,
+        only: &str,
+    ) -> Result<Self, CommandError> {
         let card = configuration(subject)?;
         let design = design(&card)?;
         let engine = Lanes::new(&design, Keep::Registers, LaneWords::Two)
-            .map_err(|e| GenError::fault("campaign", &e))?;
+            .map_err(|e| CommandError::fault("campaign", &e))?;
         let is_of_card = |name: &str| subject.has_monitors() || in_channel(name).is_none();
         let chosen = |name: &str| is_asked(name, only) && is_of_card(name);
         let flops = Flops::filtered(&engine, chosen);

@@ -1,8 +1,8 @@
 //! The cards whose flip-flops are inverted: names, configurations, designs.
 
 use super::host::{BIT_CYCLES, TIMEOUT_US};
-use crate::config;
-use crate::error::GenError;
+use endat_config as config;
+use endat_console::error::CommandError;
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::config::CardConfig;
 use endat_hdl::endat::service::program::ServiceTimes;
@@ -61,12 +61,12 @@ pub fn in_channel(name: &str) -> Option<&str> {
 }
 
 /// The card's configuration.
-pub(super) fn configuration(subject: CardSubject) -> Result<CardConfig, GenError> {
+pub(super) fn configuration(subject: CardSubject) -> Result<CardConfig, CommandError> {
     let monitors = if subject.has_monitors() { MONITORS } else { "" };
     let text = format!("{CONFIGURATION}{GUARDS}{monitors}");
     let project = config::parse("card.toml", &text).map_err(|all| {
         let all: Vec<String> = all.iter().map(|d| d.to_string()).collect();
-        GenError::input(all.join("; "))
+        CommandError::input(all.join("; "))
     })?;
     // Shorter than a board and an encoder allow, so that a case takes little time.
     let mut card = project.card;
@@ -76,7 +76,7 @@ pub(super) fn configuration(subject: CardSubject) -> Result<CardConfig, GenError
 }
 
 /// A card's design.
-pub(super) fn design(card: &CardConfig) -> Result<Design, GenError> {
+pub(super) fn design(card: &CardConfig) -> Result<Design, CommandError> {
     let times = ServiceTimes {
         request_ms: REQUEST_MS,
         busy_ms: REQUEST_MS,
@@ -89,5 +89,5 @@ pub(super) fn design(card: &CardConfig) -> Result<Design, GenError> {
     };
     let mut block = Card::with_times(card, TIMEOUT_US, &times);
     block.connect_all();
-    elaborate(&block, "card").map_err(|e| GenError::fault("campaign", &e))
+    elaborate(&block, "card").map_err(|e| CommandError::fault("campaign", &e))
 }

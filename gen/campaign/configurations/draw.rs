@@ -1,10 +1,10 @@
 //! Random configurations. Which keys there are, and what may stand there, is what the reader asks for; what is wrong with a draw is what it
 //! complains about, and is drawn again. So a new key is drawn as soon as the reader knows it.
 
-use crate::config::asked::{Asked, Kind};
-use crate::config::asked_of;
-use crate::config::keys::KEYS;
-use crate::error::Diagnostic;
+use endat_config::asked::{Asked, Kind};
+use endat_config::asked_of;
+use endat_config::keys::KEYS;
+use endat_console::error::Diagnostic;
 use endat_hdl::config::{Limits, CHANNELS};
 use endat_sim::rng::Rng;
 use std::collections::BTreeSet;
@@ -330,7 +330,7 @@ fn spoilt(rng: &mut Rng, text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::parse_any;
+    use endat_config::parse_any;
     use std::ops::Range;
 
     /// Catches a draw that depends on more than its seed, one that the reader refuses, and a key that is never drawn.
@@ -361,7 +361,7 @@ mod tests {
 
     #[test]
     fn draws_are_valid_the_same_again_and_have_every_key() {
-        check_draws(0..140);
+        check_draws(0..400);
     }
 
     #[test]

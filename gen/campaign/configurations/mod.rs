@@ -5,14 +5,15 @@ mod draw;
 
 pub use draw::{mutated, valid};
 
-use crate::artifact::Artifact;
-use crate::config::{parse_any, Configuration};
-use crate::error::GenError;
-use crate::protocols::t_format;
-use crate::readers::{is_bench, Reader, LINTERS};
-use crate::{emit, scratch};
+use endat_config::{parse_any, Configuration};
+use endat_console::artifact::Artifact;
+use endat_console::error::CommandError;
+use endat_emit::emit;
+use endat_emit::protocols::t_format;
 use endat_hdl::card::bus::HostBus;
 use endat_sim::campaign::{Campaign, Row, Tally};
+use endat_tools::readers::{is_bench, Reader, LINTERS};
+use endat_tools::scratch;
 use sha2::{Digest, Sha256};
 use std::ops::Range;
 use std::panic::catch_unwind;
@@ -47,7 +48,7 @@ pub struct Finding {
 
 impl Configurations {
     /// So many valid ones, and two spoilt ones to five of them. The outside programs must be there.
-    pub fn new(valid: u64, seed: u64) -> Result<Self, GenError> {
+    pub fn new(valid: u64, seed: u64) -> Result<Self, CommandError> {
         LINTERS.iter().try_for_each(|linter| linter.find())?;
         let cases = valid.div_ceil(VALID) * OF;
         Ok(Self { cases, seed })
@@ -135,7 +136,7 @@ struct Emission {
 }
 
 fn emission(text: &str) -> Made {
-    let made = catch_unwind(|| -> Result<Emission, GenError> {
+    let made = catch_unwind(|| -> Result<Emission, CommandError> {
         let mut is_quick = true;
         let (bus, top, files) = match parse_any("drawn.toml", text)? {
             Configuration::Card(card) => {
@@ -147,7 +148,7 @@ fn emission(text: &str) -> Made {
             }
             Configuration::Receiver(receiver) => {
                 let files = t_format::emit(&receiver)?;
-                (crate::config::RECEIVER_BUS, receiver.name, files)
+                (endat_config::RECEIVER_BUS, receiver.name, files)
             }
         };
         Ok(Emission {
@@ -193,9 +194,9 @@ impl Finding {
         top: &str,
         files: &[Artifact],
         wants_bench: bool,
-    ) -> Result<(), GenError> {
+    ) -> Result<(), CommandError> {
         let folder = scratch::folder()?;
-        crate::artifact::write(folder.path(), files, scratch::REMEDY)?;
+        endat_console::artifact::write(folder.path(), files, scratch::REMEDY)?;
         for linter in LINTERS {
             if let Some(told) = linter.lint(folder.path(), top, files)? {
                 self.fails("unclean", format!("{linter}: {told}"));

@@ -1,16 +1,15 @@
 //! `campaign`: thousands of cases in lanes; one of them again, alone, with waveforms and a drawing.
 
-mod mutants;
 mod options;
 mod tallies;
 
 use crate::cli::pictures::{draw, Drawn, Pictures};
-use crate::cli::work::{progress, ThreadsArgs};
-use crate::cli::{to_json, Outcome};
-use crate::error::GenError;
-use crate::number::number;
 use clap::{Args, ValueEnum};
+use endat_console::error::CommandError;
+use endat_console::number::number;
 use endat_sim::campaign::{self, Case, RunOptions, Traces};
+use endat_terminal::outcome::{to_json, Outcome};
+use endat_terminal::work::{progress, ThreadsArgs};
 use rtl_design::engine::{Compiled, LaneWords};
 use serde_json::json;
 use std::path::PathBuf;
@@ -21,10 +20,10 @@ use std::time::Instant;
 pub struct CampaignArgs {
     /// What to run
     name: Name,
-    /// Of merge and page: files that --out has written
+    /// Of merge: files that --out has written
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
-    /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000; configurations 5000, and 2000 spoilt ones; mutants 30 of each block]
+    /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000; configurations 5000, and 2000 spoilt ones]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     cases: Option<String>,
     /// Of upsets: moments of each kind of frame at which every flip-flop is inverted [default: 65]
@@ -38,10 +37,10 @@ pub struct CampaignArgs {
     /// Of faults: at every N-th quarter of a bit [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     step: Option<String>,
-    /// Of upsets, faults, garbage: only this port, t_format_port and ssi_port among them; of upsets also ssi_port_special, card, card_safety; of mutants: only this card [default: all]
+    /// Of upsets, faults, garbage: only this port, t_format_port and ssi_port among them; of upsets also ssi_port_special, card, card_safety [default: all]
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
-    /// Of upsets: only registers whose hierarchical name begins so, or so (a.b,a.c); of mutants: only blocks
+    /// Of upsets: only registers whose hierarchical name begins so, or so (a.b,a.c)
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
     /// Seed of the random cases [default: 1]
@@ -56,9 +55,6 @@ pub struct CampaignArgs {
     /// Of those that count, and merge: write the counts as CSV
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Of page: print all tables (campaigns/results/tables.md) instead of the page
-    #[arg(long)]
-    tables: bool,
     #[command(flatten)]
     threads: ThreadsArgs,
     /// Run only this case, alone
@@ -89,14 +85,10 @@ enum Name {
     Garbage,
     /// Every word of encoders up to 13 bits, against a reference
     Accept,
-    /// Every block of the emitted Verilog with one bit of one cell changed: who sees it
-    Mutants,
     /// Random configurations: every emission linted in both languages, some benches run; and spoilt ones
     Configurations,
     /// Put the parts of one campaign together
     Merge,
-    /// The page docs/reliability.md, from the files of whole campaigns; docs/mutants.md, from those of mutants
-    Page,
 }
 
 /// Random cases, if not told.
@@ -117,7 +109,7 @@ impl CampaignArgs {
 }
 
 /// Runs the command.
-pub fn run(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &CampaignArgs) -> Result<Outcome, CommandError> {
     arguments.check_options()?;
     let seed = number("--seed", arguments.seed(), 0..=u64::MAX)?;
     if !matches!(arguments.name, Name::Sweep | Name::Random) {
@@ -137,8 +129,8 @@ pub fn run(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
     }
 }
 
-fn fault(e: &dyn std::fmt::Display) -> GenError {
-    GenError::fault("campaign", e)
+fn fault(e: &dyn std::fmt::Display) -> CommandError {
+    CommandError::fault("campaign", e)
 }
 
 /// What to type to see one case alone.
@@ -152,7 +144,7 @@ fn replay(arguments: &CampaignArgs, index: usize) -> String {
     format!("{program} campaign {name}{random} --case {index} --vcd case.vcd --svg case.svg")
 }
 
-fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
+fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, CommandError> {
     let options = RunOptions {
         threads: arguments.threads.count()?,
         lanes: LaneWords::Two,
@@ -202,7 +194,7 @@ fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
     })
 }
 
-fn alone(arguments: &CampaignArgs, case: &Case, index: usize) -> Result<Outcome, GenError> {
+fn alone(arguments: &CampaignArgs, case: &Case, index: usize) -> Result<Outcome, CommandError> {
     let design = case.design().map_err(|e| fault(&e))?;
     let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
     let bench = case.run_alone(engine, true);

@@ -1,21 +1,19 @@
 //! Campaigns that count what becomes of each case: parts, tables, budgets.
 
-use super::{fault, mutants, CampaignArgs, Name};
-use crate::campaign::card::{CardSubject, CardUpsets};
-use crate::campaign::configurations::Configurations;
-use crate::campaign::mutants::{page as page_of_mutants, table as table_of_mutants, NAME};
-use crate::campaign::part::{merge, shard, Identity, Part};
-use crate::campaign::{budget, page, reference, report};
-use crate::cli::work::progress;
-use crate::cli::Outcome;
-use crate::error::{shorten, shown, GenError};
-use crate::number::{number, number_if};
+use super::{fault, CampaignArgs, Name};
+use endat_campaign::card::{CardSubject, CardUpsets};
+use endat_campaign::configurations::Configurations;
+use endat_campaign::part::{merge, shard, Part};
+use endat_campaign::{budget, reference, report};
+use endat_console::error::{shorten, shown, CommandError};
+use endat_console::number::{number, number_if};
 use endat_sim::campaign::faults::Faults;
 use endat_sim::campaign::garbage::{AcceptSet, Garbage, WIDEST_BITS};
 use endat_sim::campaign::other::{ssi, t_format, OtherFrames, OtherUpsets};
 use endat_sim::campaign::port::Port;
 use endat_sim::campaign::upsets::{Draw, Upsets};
-use endat_sim::campaign::{count, run_shard, Campaign, CampaignError, Joined, Shard};
+use endat_sim::campaign::{count, Campaign, CampaignError, Joined, Shard};
+use endat_terminal::outcome::Outcome;
 use std::time::Instant;
 
 /// Most moments of a frame, and most quarter bits between two faults.
@@ -35,26 +33,17 @@ const QUICK_STEP: u64 = 50;
 const QUICK_BITS: u32 = 5;
 
 /// Runs such a campaign, or puts parts of one together.
-pub fn run(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
+pub fn run(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, CommandError> {
     match arguments.name {
         Name::Merge => merged(arguments),
-        Name::Page => {
-            let parts = arguments.parts.iter().map(|path| Part::read(path));
-            let parts = parts.collect::<Result<Vec<_>, _>>()?;
-            Ok(Outcome::good(match &parts[..] {
-                [first, ..] if first.identity.campaign == NAME => page_of_mutants(&parts)?,
-                parts if arguments.tables => page::tables(parts)?,
-                parts => page::page(parts)?,
-            }))
-        }
         _ => one(arguments, seed),
     }
 }
 
 /// Runs a part of a campaign, or all of it.
-fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
+fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, CommandError> {
     let part = arguments.shard.as_deref().map(shard).transpose();
-    let part = part.map_err(|e| GenError::input(format!("--shard = {e}")))?;
+    let part = part.map_err(|e| CommandError::input(format!("--shard = {e}")))?;
     let threads = arguments.threads.count()?;
     let (name, plan, campaign) = match arguments.name {
         Name::Configurations => {
@@ -65,35 +54,22 @@ fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
             let plan = format!("seed {seed}");
             ("configurations", plan, Box::new(configurations) as _)
         }
-        Name::Mutants => match mutants::asked(arguments, seed, part)? {
-            mutants::Asked::One(outcome) => return Ok(outcome),
-            mutants::Asked::All(plan, mutants) => (NAME, plan, Box::new(mutants) as _),
-        },
         _ => {
             let (name, plan, campaign) = chosen(arguments, seed)?;
             (name, plan, campaign?)
         }
     };
     let start = Instant::now();
-    let shard = part.unwrap_or(Shard::WHOLE);
-    let all = count(campaign.as_ref());
-    let cases = shard.cases(all);
-    let cases = cases.end - cases.start;
-    let told = progress(cases.max(1) as usize, "cases");
-    let tally = run_shard(campaign.as_ref(), shard, threads, |done| {
-        told(done as usize)
-    });
+    let part = Part::run(
+        name,
+        plan,
+        campaign.as_ref(),
+        part.unwrap_or(Shard::WHOLE),
+        threads,
+    );
     let seconds = start.elapsed().as_secs_f64();
-    let part = Part {
-        identity: Identity {
-            campaign: name.into(),
-            version: format!("{}-{:016x}", env!("CARGO_PKG_VERSION"), campaign.digest()),
-            plan,
-            cases: all,
-        },
-        shard,
-        tally,
-    };
+    let cases = part.shard.cases(part.identity.cases);
+    let (cases, all) = (cases.end - cases.start, part.identity.cases);
     if let Some(path) = &arguments.out {
         part.write(path)?;
     }
@@ -103,7 +79,7 @@ fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
 }
 
 /// The campaign over configurations that is asked for.
-fn configurations(arguments: &CampaignArgs, seed: u64) -> Result<Configurations, GenError> {
+fn configurations(arguments: &CampaignArgs, seed: u64) -> Result<Configurations, CommandError> {
     let told = arguments.cases.as_deref().unwrap_or(CONFIGURATIONS_USUAL);
     let valid = match arguments.quick {
         true => QUICK_CONFIGURATIONS,
@@ -113,7 +89,7 @@ fn configurations(arguments: &CampaignArgs, seed: u64) -> Result<Configurations,
 }
 
 /// One configuration: the text, and what was said about it.
-fn alone(configurations: &Configurations, index: &str) -> Result<Outcome, GenError> {
+fn alone(configurations: &Configurations, index: &str) -> Result<Outcome, CommandError> {
     let case = number("--case", index, 0..=configurations.cases() - 1)?;
     let found = configurations.case(case);
     Ok(Outcome {
@@ -128,20 +104,16 @@ fn summary(part: &Part) -> Outcome {
     let (lines, holds) = budget::lines(&part.identity.campaign, &part.tally);
     let is_whole = part.shard == Shard::WHOLE;
     let campaign = part.identity.campaign.as_str();
-    let table = match campaign {
-        NAME => table_of_mutants(&part.tally),
-        _ => report::text(campaign, &part.tally),
-    };
     Outcome {
-        stdout: table + &lines,
+        stdout: report::text(campaign, &part.tally) + &lines,
         exit_code: u8::from(is_whole && !holds),
         ..Outcome::default()
     }
 }
 
-fn merged(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
+fn merged(arguments: &CampaignArgs) -> Result<Outcome, CommandError> {
     let named = |path: &std::path::PathBuf| Ok((path.display().to_string(), Part::read(path)?));
-    let parts: Result<Vec<_>, GenError> = arguments.parts.iter().map(named).collect();
+    let parts: Result<Vec<_>, CommandError> = arguments.parts.iter().map(named).collect();
     let whole = merge(parts?)?;
     if let Some(path) = &arguments.out {
         whole.write(path)?;
@@ -149,7 +121,7 @@ fn merged(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
     Ok(summary(&whole))
 }
 
-type Made = Result<Box<dyn Campaign>, GenError>;
+type Made = Result<Box<dyn Campaign>, CommandError>;
 
 fn boxed<C: Campaign + 'static>(made: Result<C, CampaignError>) -> Made {
     let made = made.map_err(|e| fault(&e))?;
@@ -225,7 +197,7 @@ fn of_others(subjects: &Subjects, cases: u64) -> u64 {
 /// Frames that are disturbed, of EnDat ports and of the others that are asked for.
 fn disturbed(
     subjects: &Subjects,
-    of_ports: Result<Box<dyn Campaign>, GenError>,
+    of_ports: Result<Box<dyn Campaign>, CommandError>,
     of_t_format: impl FnOnce() -> Result<OtherFrames<t_format::TFormat>, CampaignError>,
     of_ssi: impl FnOnce() -> Result<OtherFrames<ssi::Ssi<false>>, CampaignError>,
 ) -> Made {
@@ -243,7 +215,10 @@ fn disturbed(
 }
 
 /// The campaign that is asked for: its name and its plan, in words.
-fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, Made), GenError> {
+fn chosen(
+    arguments: &CampaignArgs,
+    seed: u64,
+) -> Result<(&'static str, String, Made), CommandError> {
     let chosen = arguments.subject.as_deref();
     let is_t_format = chosen.is_none_or(|name| name == t_format::SUBJECT);
     let is_ssi = chosen.is_none_or(|name| name == ssi::SUBJECT);
@@ -263,7 +238,7 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
             names.push(ssi::SUBJECT_SPECIAL);
             names.extend(CardSubject::ALL.map(CardSubject::name));
         }
-        return Err(GenError::input(format!(
+        return Err(CommandError::input(format!(
             "--subject = {}: is no subject of this campaign; take one of {}",
             shown(chosen.unwrap_or_default()),
             names.join(", ")
@@ -337,7 +312,7 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
             let of = |only: &str| {
                 let made = upsets(&subjects, draw, seed, only)?;
                 match count(made.as_ref()) {
-                    0 => Err(GenError::input(format!(
+                    0 => Err(CommandError::input(format!(
                         "--only = {}: no register of --subject {subject} begins like this; `campaign upsets` prints their blocks, or leave it out",
                         shorten(only)
                     ))),

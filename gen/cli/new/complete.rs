@@ -2,8 +2,8 @@
 
 use super::questions::{Answers, Question, NO_BOARD, QUESTIONS};
 use super::text;
-use crate::config;
-use crate::error::Diagnostic;
+use endat_config as config;
+use endat_console::error::Diagnostic;
 use std::collections::BTreeMap;
 
 /// Answers that give no configuration.

@@ -7,9 +7,9 @@ mod text;
 
 use super::work::say;
 use super::Outcome;
-use crate::error::{shown, Diagnostic, GenError};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use complete::{complete, useless, Wrong};
+use endat_console::error::{shown, CommandError, Diagnostic};
 use questions::{has_turns_apart, Answers, Of, Question, QUESTIONS};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -122,7 +122,7 @@ fn ask(
     given: &mut Answers,
     usual: &str,
     lines: &mut dyn Iterator<Item = io::Result<String>>,
-) -> Result<Answers, GenError> {
+) -> Result<Answers, CommandError> {
     let mut stderr = io::stderr();
     let _ = writeln!(stderr, "{}: {}", question.name, question.about());
     for (word, means) in question.words() {
@@ -134,13 +134,13 @@ fn ask(
         let line = match lines.next() {
             Some(Ok(line)) => line,
             Some(Err(error)) => {
-                return Err(GenError::input(format!(
+                return Err(CommandError::input(format!(
                     "stdin: cannot read: {error}; give options instead"
                 )))
             }
             None => {
                 let _ = writeln!(stderr);
-                return Err(GenError::input(format!(
+                return Err(CommandError::input(format!(
                     "{}: has no answer: standard input is at its end; answer with --{}, or take what is usual with --yes",
                     question.name, question.name
                 )));
@@ -162,12 +162,12 @@ fn ask(
 }
 
 /// Refuses an option that nothing is asked about.
-fn check_asked(given: &Answers, all: &Answers) -> Result<(), GenError> {
+fn check_asked(given: &Answers, all: &Answers) -> Result<(), CommandError> {
     useless(given, all).map_or(Ok(()), |(name, told)| {
         let bus = all.get("bus").map_or("", String::as_str);
         let protocol = all.get("protocol").map_or("", String::as_str);
         let (name_of, told) = (*name, shown(told));
-        Err(GenError::input(match name_of {
+        Err(CommandError::input(match name_of {
             "board" => format!(
                 "--board = {told}: a card behind bus {bus} stays inside a chip, so it has no board top; {}",
                 remedies::use_another(given, all)
@@ -194,9 +194,9 @@ fn next(path: &Path) -> String {
 }
 
 /// Runs the command.
-pub fn run(arguments: &NewArgs) -> Result<Outcome, GenError> {
+pub fn run(arguments: &NewArgs) -> Result<Outcome, CommandError> {
     let mut given = arguments.given.clone();
-    let mut all = completed(&given).map_err(GenError::Input)?;
+    let mut all = completed(&given).map_err(CommandError::Input)?;
     check_asked(&given, &all)?;
     if !arguments.yes {
         let mut lines = io::stdin().lines();
@@ -224,11 +224,11 @@ pub fn run(arguments: &NewArgs) -> Result<Outcome, GenError> {
     };
     let written = made.and_then(|mut file| file.write_all(text.as_bytes()));
     written.map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists => GenError::input(format!(
+        io::ErrorKind::AlreadyExists => CommandError::input(format!(
             "{}: is there already; give another file, or replace it with --force",
             path.display()
         )),
-        _ => GenError::io("write", &path, &error, remedy),
+        _ => CommandError::io("write", &path, &error, remedy),
     })?;
     Ok(Outcome::good(next(&path)))
 }

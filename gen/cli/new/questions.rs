@@ -1,12 +1,12 @@
 //! What `new` asks: keys of a configuration, in an order in which each answer stands on those before it.
 
-use crate::board::Board;
-use crate::config::keys::{self, Key, TABLES};
-use crate::config::words::RECEIVER_BUS;
-use crate::form::key::Kind;
-use crate::json_schema::plain;
-use crate::number::number;
-use crate::protocols::t_format::keys::BIT_RATE;
+use endat_config::board::Board;
+use endat_config::form::key::Kind;
+use endat_config::json_schema::plain;
+use endat_config::keys::{self, Key, TABLES};
+use endat_config::protocols::t_format::keys::BIT_RATE;
+use endat_config::words::RECEIVER_BUS;
+use endat_console::number::number;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::timing::{cycles_to_ns, period_cycles};
 use endat_regs::Protocol;
@@ -128,7 +128,11 @@ pub fn has_board(answers: &Answers) -> bool {
 }
 
 /// What suits the board comes first.
-fn of_board(answers: &Answers, own: fn(&crate::board::Start) -> u64, usual: &[u64]) -> Vec<String> {
+fn of_board(
+    answers: &Answers,
+    own: fn(&endat_config::board::Start) -> u64,
+    usual: &[u64],
+) -> Vec<String> {
     let named = answers.get("board").filter(|_| has_board(answers));
     let board = named.and_then(|name| Board::named(name).ok());
     let own = board.and_then(|board| board.start.map(|start| own(&start)));

@@ -2,9 +2,9 @@
 
 use super::complete::{complete, useless};
 use super::questions::{buses_of_boards, Answers, NO_BOARD};
-use crate::board::{self, Board};
-use crate::config::keys::CHANNELS;
-use crate::form::key::head;
+use endat_config::board::{self, Board};
+use endat_config::form::key::head;
+use endat_config::keys::CHANNELS;
 
 /// True if `new` accepts these answers.
 fn is_accepted(given: &Answers) -> bool {

@@ -1,15 +1,15 @@
 //! The text of a configuration: what was answered, and beside it every key that was not asked for, with what counts without it.
 
 use super::questions::{form_of, has_board, has_uart, place_of, Answers, Of, NOTHING, QUESTIONS};
-use crate::board::{card_ports, Board, Kind as PortKind, MorePorts};
-use crate::config::base::takes;
-use crate::config::keys::{
+use endat_config::base::takes;
+use endat_config::board::{card_ports, Board, Kind as PortKind, MorePorts};
+use endat_config::form::key::head;
+use endat_config::json_schema::plain;
+use endat_config::keys::{
     self, Key, Kind, Usual, CARD_FORM, CHANNELS, COMMON, ENDAT_FORM, KEYS, TABLES,
 };
-use crate::error::{shown, GenError};
-use crate::form::key::head;
-use crate::json_schema::plain;
-use crate::number::{grouped, number};
+use endat_console::error::{shown, CommandError};
+use endat_console::number::{grouped, number};
 use endat_hdl::card::bus::HostBus;
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ use std::fmt::Write;
 const WIDTH: usize = 110;
 
 /// How an answer is written; an error if it cannot be.
-pub fn literal(of: Of, option: &str, answer: &str) -> Result<String, GenError> {
+pub fn literal(of: Of, option: &str, answer: &str) -> Result<String, CommandError> {
     match of {
         Of::Channels => {
             let range = endat_hdl::config::CHANNELS;
@@ -32,7 +32,7 @@ pub fn literal(of: Of, option: &str, answer: &str) -> Result<String, GenError> {
         }
         Of::Key(key, _) if key.kind == Kind::Boolean => match answer {
             "true" | "false" => Ok(answer.to_owned()),
-            other => Err(GenError::input(format!(
+            other => Err(CommandError::input(format!(
                 "{option} = {}: is neither true nor false; give one of the two",
                 shown(other)
             ))),

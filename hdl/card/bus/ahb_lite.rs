@@ -6,9 +6,9 @@
 //! hrdata, hreadyout, hresp <----------------------------------- finished
 //! ```
 //!
-//! An address phase is taken when `hready` and `hreadyout` are HIGH; its data phase has wait states until the word is there, and the next address phase may overlap
-//! its last cycle. Words only: another size, or an address that is no multiple of 4, has the two cycles of an error, and nothing is
-//! done. A burst is its single words.
+//! An address phase is accepted when `hready` and `hreadyout` are HIGH. Its data phase has wait states until the word is ready, and the next address phase may overlap
+//! its last cycle. Words only: another size, or an address that is not a multiple of 4, gets the two-cycle error response and has no effect.
+//! A burst is handled as single words.
 //!
 //! Ref: ARM IHI 0033A, AMBA 3 AHB-Lite Protocol v1.0.
 
@@ -28,7 +28,7 @@ pub struct AhbLiteFront {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// The address is one of this subordinate.
+    /// The address belongs to this subordinate.
     pub hsel: Signal<In, Bit>,
     /// Bit 1: a transfer.
     pub htrans: Signal<In, Bits<2>>,
@@ -40,13 +40,13 @@ pub struct AhbLiteFront {
     pub haddr: Signal<In, Bits<13>>,
     /// Word to write, in the data phase.
     pub hwdata: Signal<In, Bits<32>>,
-    /// The transfer before, of whoever, ends in this cycle.
+    /// The previous transfer on the bus ends in this cycle.
     pub hready: Signal<In, Bit>,
     /// Word read, in the last cycle of the data phase.
     pub hrdata: Signal<Out, Bits<32>>,
     /// The data phase ends in this cycle.
     pub hreadyout: Signal<Out, Bit>,
-    /// Nothing was done; two cycles, `hreadyout` LOW in the first.
+    /// Error, without effect: two cycles, `hreadyout` LOW in the first.
     pub hresp: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
@@ -68,7 +68,7 @@ pub struct AhbLiteFront {
     address: Reg<Bits<11>>,
     /// High if the transfer is a write.
     writing: Reg<Bit>,
-    /// High for one cycle when an address phase is taken.
+    /// High for one cycle when an address phase is accepted.
     start: Signal<Local, Bit>,
     /// High if the transfer is an aligned word.
     is_word: Signal<Local, Bit>,
@@ -85,7 +85,7 @@ impl Logic for AhbLiteFront {
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         self.hreadyout.next = !self.busy.q.val() & !self.refused.q.val();
-        // The bus is not ready while this one is not: alone on its bus, `hready` may be HIGH for ever.
+        // `hready` alone is not enough: it may be constantly HIGH for the only subordinate of a bus.
         self.start.next = self.hsel.val()
             & self.hready.val()
             & self.htrans.val().get_bit(1)
@@ -115,10 +115,10 @@ impl Logic for AhbLiteFront {
 }
 
 card_top! {
-    /// The whole core behind AHB-Lite; the number of channels is that of [`CardConfig::channels`].
+    /// The whole core with an AHB-Lite front; [`CardConfig::channels`] sets the number of channels.
     AhbLiteCard, AhbLiteCardParts: AhbLiteFront
     in {
-        /// The address is one of this subordinate.
+        /// The address belongs to this subordinate.
         s_ahb_hsel: Bit => hsel,
         /// Bit 1: a transfer.
         s_ahb_htrans: Bits<2> => htrans,
@@ -130,7 +130,7 @@ card_top! {
         s_ahb_haddr: Bits<13> => haddr,
         /// Word to write, in the data phase.
         s_ahb_hwdata: Bits<32> => hwdata,
-        /// The transfer before, of whoever, ends in this cycle.
+        /// The previous transfer on the bus ends in this cycle.
         s_ahb_hready: Bit => hready,
     }
     out {
@@ -138,7 +138,7 @@ card_top! {
         s_ahb_hrdata: Bits<32> => hrdata,
         /// The data phase ends in this cycle.
         s_ahb_hreadyout: Bit => hreadyout,
-        /// Nothing was done; two cycles, `s_ahb_hreadyout` LOW in the first.
+        /// Error, without effect: two cycles, `s_ahb_hreadyout` LOW in the first.
         s_ahb_hresp: Bit => hresp,
     }
 }

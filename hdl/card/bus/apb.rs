@@ -5,9 +5,9 @@
 //! prdata, pready, pslverr <---------------------------- finished
 //! ```
 //!
-//! A transfer is taken in the cycle after its first one, if it is enabled then: what a master shows in a longer SETUP and changes does not count.
-//! Every transfer has wait states; none is without an end. `pslverr` reports an address that is no multiple of 4. A
-//! master that takes `psel` away before `pready` gets no answer, and a write that has begun is carried out.
+//! A transfer is accepted in the cycle after its first one, if it is enabled then; changes during a longer SETUP have no effect.
+//! Every transfer has wait states, and every one ends. `pslverr` reports an address that is not a multiple of 4. A
+//! master that drops `psel` before `pready` gets no answer; a write that has begun is completed.
 //!
 //! Ref: ARM IHI 0024B, AMBA 3 APB Protocol v1.0.
 
@@ -27,7 +27,7 @@ pub struct ApbFront {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// The master talks to this slave.
+    /// The master selects this slave.
     pub psel: Signal<In, Bit>,
     /// Second and later cycles of a transfer.
     pub penable: Signal<In, Bit>,
@@ -41,7 +41,7 @@ pub struct ApbFront {
     pub prdata: Signal<Out, Bits<32>>,
     /// The transfer ends in this cycle.
     pub pready: Signal<Out, Bit>,
-    /// With `pready`: the address is no multiple of 4; nothing was done.
+    /// With `pready`: the address is not a multiple of 4; no effect.
     pub pslverr: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
@@ -59,13 +59,13 @@ pub struct ApbFront {
     error: Reg<Bit>,
     /// High for one cycle when a word access begins.
     request: Reg<Bit>,
-    /// High if the master has left the transfer before its end; cleared by the next transfer.
+    /// High if the master has dropped the transfer before its end; cleared by the next transfer.
     abandoned: Reg<Bit>,
     /// Word address of the transfer.
     address: Reg<Bits<11>>,
     /// High if the transfer is a write.
     writing: Reg<Bit>,
-    /// High for one cycle when a transfer is taken.
+    /// High for one cycle when a transfer is accepted.
     start: Signal<Local, Bit>,
     /// High while the master selects this slave and enables the transfer.
     enabled: Signal<Local, Bit>,
@@ -83,7 +83,7 @@ impl Logic for ApbFront {
         self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
-        // Also in the second cycle of a transfer, if one that was abandoned kept it waiting.
+        // Also in the second cycle of a transfer, if an abandoned one delayed it.
         self.start.next = self.psel.val() & !self.busy.q.val() & !self.ready.q.val();
         self.misaligned.next = self.paddr.val().get_bits::<2>(0).any();
         self.ready.d.next = false;
@@ -122,10 +122,10 @@ impl Logic for ApbFront {
 }
 
 card_top! {
-    /// The whole core behind APB3; the number of channels is that of [`CardConfig::channels`].
+    /// The whole core with an APB3 front; [`CardConfig::channels`] sets the number of channels.
     ApbCard, ApbCardParts: ApbFront
     in {
-        /// The master talks to this slave.
+        /// The master selects this slave.
         s_apb_psel: Bit => psel,
         /// Second and later cycles of a transfer.
         s_apb_penable: Bit => penable,
@@ -141,7 +141,7 @@ card_top! {
         s_apb_prdata: Bits<32> => prdata,
         /// The transfer ends in this cycle.
         s_apb_pready: Bit => pready,
-        /// With `pready`: the address is no multiple of 4; nothing was done.
+        /// With `pready`: the address is not a multiple of 4; no effect.
         s_apb_pslverr: Bit => pslverr,
     }
 }

@@ -4,12 +4,12 @@
 //! aw ---> write_address --+
 //! w  ---> data, strobes --+--> in turn --> WordAccess <-> bank
 //! ar ---> read_address ---+                    |
-//! b, r <---------------------------------------+  held until they are taken
+//! b, r <---------------------------------------+  held until accepted
 //! ```
 //!
-//! All five channels are independent; every READY, VALID and answer comes from registers. A write of a part of a word is refused with
-//! SLVERR and does nothing; one without any byte is OKAY and does nothing. Absent words read as 0 with OKAY, as the map says.
-//! The card does not look at AWPROT and ARPROT, and has no pins for them.
+//! All five channels are independent; every READY, VALID and response comes from registers. A write to part of a word gets
+//! SLVERR and has no effect. A write without any byte gets OKAY and has no effect. Absent words read 0 with OKAY, as in the register map.
+//! The card has no pins for AWPROT and ARPROT.
 //!
 //! Ref: ARM IHI 0022E, AMBA AXI4-Lite, chapter B1.
 
@@ -29,39 +29,39 @@ pub struct AxiLiteFront {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Byte address of a write; the lowest two bits do not matter.
+    /// Byte address of a write; the lowest two bits are ignored.
     pub awaddr: Signal<In, Bits<13>>,
-    /// There is an address of a write.
+    /// The write address is valid.
     pub awvalid: Signal<In, Bit>,
-    /// It is taken.
+    /// The write address is accepted.
     pub awready: Signal<Out, Bit>,
     /// Word to write.
     pub wdata: Signal<In, Bits<32>>,
-    /// Bytes of it: all, or none.
+    /// Byte strobes: all, or none.
     pub wstrb: Signal<In, Bits<4>>,
-    /// There is a word to write.
+    /// The word to write is valid.
     pub wvalid: Signal<In, Bit>,
-    /// It is taken.
+    /// The word to write is accepted.
     pub wready: Signal<Out, Bit>,
-    /// 0 = written, 2 = refused: a part of a word.
+    /// 0 = written, 2 = rejected: part of a word.
     pub bresp: Signal<Out, Bits<2>>,
     /// A write has ended.
     pub bvalid: Signal<Out, Bit>,
-    /// The master takes that.
+    /// The master accepts the write response.
     pub bready: Signal<In, Bit>,
-    /// Byte address of a read; the lowest two bits do not matter.
+    /// Byte address of a read; the lowest two bits are ignored.
     pub araddr: Signal<In, Bits<13>>,
-    /// There is an address of a read.
+    /// The read address is valid.
     pub arvalid: Signal<In, Bit>,
-    /// It is taken.
+    /// The read address is accepted.
     pub arready: Signal<Out, Bit>,
     /// Word read.
     pub rdata: Signal<Out, Bits<32>>,
     /// Always 0.
     pub rresp: Signal<Out, Bits<2>>,
-    /// There is a word read.
+    /// The word read is valid.
     pub rvalid: Signal<Out, Bit>,
-    /// The master takes it.
+    /// The master accepts the word read.
     pub rready: Signal<In, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
@@ -101,13 +101,13 @@ pub struct AxiLiteFront {
     address: Reg<Bits<11>>,
     /// High if the access, or the last one, is a write.
     writing: Reg<Bit>,
-    /// High if a write has all it needs, and its response has room.
+    /// High if address and word of a write are present, and its response register is free.
     may_write: Signal<Local, Bit>,
-    /// High if a read has all it needs, and its word has room.
+    /// High if the address of a read is present, and its data register is free.
     may_read: Signal<Local, Bit>,
-    /// High for one cycle when a write is taken.
+    /// High for one cycle when a write is accepted.
     goes_write: Signal<Local, Bit>,
-    /// High for one cycle when a read is taken.
+    /// High for one cycle when a read is accepted.
     goes_read: Signal<Local, Bit>,
 }
 
@@ -121,7 +121,7 @@ impl Logic for AxiLiteFront {
         self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
-        // Each channel has a place for one item; it is free again when the access begins.
+        // Each channel has a register for one item; it is free again when the access begins.
         if self.awvalid.val() & !self.has_aw.q.val() {
             self.has_aw.d.next = true;
             self.write_address.d.next = self.awaddr.val().get_bits::<11>(2);
@@ -142,7 +142,7 @@ impl Logic for AxiLiteFront {
             self.has_r.d.next = false;
         }
 
-        // A response that the master does not take stops its own direction only. If both directions are ready, they alternate.
+        // A response that the master does not accept stops its own direction only. If both directions are ready, they alternate.
         self.may_write.next = self.has_aw.q.val() & self.has_w.q.val() & !self.has_b.q.val();
         self.may_read.next = self.has_ar.q.val() & !self.has_r.q.val();
         self.goes_write.next = !self.busy.q.val()
@@ -162,7 +162,7 @@ impl Logic for AxiLiteFront {
             self.has_w.d.next = false;
             self.address.d.next = self.write_address.q.val();
             self.writing.d.next = true;
-            // Nothing selected is nothing to do; a part of a word is refused.
+            // No byte selected: no effect. Part of a word: error.
             self.error.d.next = self.strobes.q.val().any() & !self.strobes.q.val().all();
             if self.strobes.q.val().all() {
                 self.request.d.next = true;
@@ -200,54 +200,54 @@ impl Logic for AxiLiteFront {
 }
 
 card_top! {
-    /// The whole core behind AXI4-Lite; the number of channels is that of [`CardConfig::channels`].
+    /// The whole core with an AXI4-Lite front; [`CardConfig::channels`] sets the number of channels.
     AxiLiteCard, AxiLiteCardParts: AxiLiteFront
     in {
-        /// Byte address of a write; the lowest two bits do not matter.
+        /// Byte address of a write; the lowest two bits are ignored.
         s_axi_awaddr: Bits<13> => awaddr,
-        /// There is an address of a write.
+        /// The write address is valid.
         s_axi_awvalid: Bit => awvalid,
     }
     out {
-        /// It is taken.
+        /// The write address is accepted.
         s_axi_awready: Bit => awready,
     }
     in {
         /// Word to write.
         s_axi_wdata: Bits<32> => wdata,
-        /// Bytes of it: all, or none.
+        /// Byte strobes: all, or none.
         s_axi_wstrb: Bits<4> => wstrb,
-        /// There is a word to write.
+        /// The word to write is valid.
         s_axi_wvalid: Bit => wvalid,
     }
     out {
-        /// It is taken.
+        /// The word to write is accepted.
         s_axi_wready: Bit => wready,
-        /// 0 = written, 2 = refused: a part of a word.
+        /// 0 = written, 2 = rejected: part of a word.
         s_axi_bresp: Bits<2> => bresp,
         /// A write has ended.
         s_axi_bvalid: Bit => bvalid,
     }
     in {
-        /// The master takes that.
+        /// The master accepts the write response.
         s_axi_bready: Bit => bready,
-        /// Byte address of a read; the lowest two bits do not matter.
+        /// Byte address of a read; the lowest two bits are ignored.
         s_axi_araddr: Bits<13> => araddr,
-        /// There is an address of a read.
+        /// The read address is valid.
         s_axi_arvalid: Bit => arvalid,
     }
     out {
-        /// It is taken.
+        /// The read address is accepted.
         s_axi_arready: Bit => arready,
         /// Word read.
         s_axi_rdata: Bits<32> => rdata,
         /// Always 0.
         s_axi_rresp: Bits<2> => rresp,
-        /// There is a word read.
+        /// The word read is valid.
         s_axi_rvalid: Bit => rvalid,
     }
     in {
-        /// The master takes it.
+        /// The master accepts the word read.
         s_axi_rready: Bit => rready,
     }
     out {}

@@ -1,8 +1,8 @@
-//! Parallel front: an asynchronous 16-bit bus with eight registers, as a signal processor has it.
+//! Parallel front: an asynchronous 16-bit bus with eight registers, for a signal processor.
 //!
 //! ```text
 //! cs_n, rd_n, wr_n, register --> synchronisers --> 0 .. 2  position     \
-//!                                                  3, 4    status        >- read round and round by WordAccess <-> bank
+//!                                                  3, 4    status        >- read continuously by WordAccess <-> bank
 //! data <-- output register <---------------------- 5 .. 7  window       //
 //! ```
 //!
@@ -11,10 +11,10 @@
 //! | 0, 1, 2 | position, bits 15..0, 31..16, 47..32; reading register 0 latches 0 to 4 | |
 //! | 3, 4 | word `status` of the result, bits 31..16 and 15..0 | |
 //! | 5 | bit 15 busy, 13:11 channel, 10:0 word address | 13:11 channel of 0 to 4, 10:0 word address; begins to read that word unless bit 14 is set |
-//! | 6, 7 | the word, bits 15..0, 31..16 | the same; writing 7 writes the word |
+//! | 6, 7 | the word, bits 15..0, 31..16 | bits 15..0, 31..16; writing 7 writes the word |
 //!
-//! A register's data are at the pins 4 clocks after the register has been selected. While bit 15 of register 5 is set, writes
-//! are ignored. The direct registers follow a result after 130 clocks at most.
+//! The data of a register reach the pins 4 clocks after the register is selected. While bit 15 of register 5 is set, writes
+//! are ignored. The direct registers follow a result after at most 130 clocks.
 
 use super::strobes::BusStrobes;
 use super::word_access::WordAccess;
@@ -45,7 +45,7 @@ pub struct ParallelFront {
     pub data_in: Signal<In, Bits<16>>,
     /// Data to the processor, valid 4 clocks after the register is selected.
     pub data_out: Signal<Out, Bits<16>>,
-    /// The card drives the data lines, straight from the strobes.
+    /// The card drives the data lines; combinational from the strobes.
     pub data_enable: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
@@ -96,7 +96,7 @@ pub struct ParallelFront {
     address: Reg<Bits<11>>,
     /// High if the access is a write.
     writing: Reg<Bit>,
-    /// High if the access is one of the window.
+    /// High if the access belongs to the window.
     is_window: Reg<Bit>,
     /// Word of the result that is read next, 0 to 2.
     step: Reg<Bits<2>>,
@@ -108,7 +108,7 @@ pub struct ParallelFront {
     last_register: Reg<Bits<3>>,
     /// High if the same register has been read for two cycles.
     is_steady: Reg<Bit>,
-    /// High while a register is read that was read in the cycle before, too.
+    /// High while the register of the previous cycle is still read.
     is_same: Signal<Local, Bit>,
     /// High while register 0 is read.
     is_first: Signal<Local, Bit>,
@@ -177,7 +177,7 @@ impl Logic for ParallelFront {
             self.out_data.d.next = self.out_data.q.val();
         }
         self.data_out.next = self.out_data.q.val();
-        // No register: the lines are free as soon as the strobe ends.
+        // Combinational: the lines are free as soon as the strobe ends.
         self.data_enable.next = !self.cs_n.val() & !self.rd_n.val();
 
         if self.strobes.written.val() & !self.wants_read.q.val() & !self.wants_write.q.val() {
@@ -200,7 +200,7 @@ impl Logic for ParallelFront {
             }
         }
 
-        // The result of the channel is read again and again: three words at rising addresses, so of one snapshot. The window comes between two rounds.
+        // The result of the channel is read continuously: three words at rising addresses, so from one snapshot. The window is accessed between two rounds.
         self.request.d.next = false;
         if !self.busy.q.val() {
             self.busy.d.next = true;
@@ -261,7 +261,7 @@ impl Logic for ParallelFront {
 }
 
 card_top! {
-    /// The whole core behind a parallel bus; the number of channels is that of [`CardConfig::channels`].
+    /// The whole core with a parallel bus; [`CardConfig::channels`] sets the number of channels.
     ParallelCard, ParallelCardParts: ParallelFront
     in {
         /// Chip select, active low, asynchronous.
@@ -278,7 +278,7 @@ card_top! {
     out {
         /// Data to the processor, valid 4 clocks after the register is selected.
         bus_data_o: Bits<16> => data_out,
-        /// The card drives the data lines, straight from the strobes.
+        /// The card drives the data lines; combinational from the strobes.
         bus_data_oe: Bit => data_enable,
     }
 }

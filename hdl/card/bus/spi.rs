@@ -5,11 +5,11 @@
 //! answer  s  -- -- -- --  d3 d2 d1 d0 ... c1 c0          answer  s
 //! ```
 //!
-//! Addresses count words and rise; `n` words, 1 to 255. `c1 c0` is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF): in a read over
-//! the four bytes of the request and all words that came, in a write over everything before it, from the second word on over that
-//! word. A word is written when its check sum is right; otherwise nothing more of the frame is. `s` is 0xA0, or 0xA2 if the last write was refused.
-//! All result words of a frame are of one snapshot. A frame may end anywhere. A read that comes while a word is still being written waits for it;
-//! if the host's clock does not, the check sum of its answer is wrong.
+//! Addresses count words and rise; `n` words, 1 to 255. `c1 c0` is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF). In a read it covers
+//! the four bytes of the request and all words sent. In a write it covers everything before it, and from the second word on that
+//! word. A word is written if its check sum is right; otherwise the rest of the frame is ignored. `s` is 0xA0, or 0xA2 if the last write was rejected.
+//! All result words of a frame belong to one snapshot. A frame may end anywhere. A read during a pending write waits for the write;
+//! if the host's clock does not wait, the check sum of the answer is wrong.
 
 use super::word_access::WordAccess;
 use crate::card::ports::AccessOut;
@@ -22,7 +22,7 @@ use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
-/// What the byte means.
+/// Meaning of the byte.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum SpiState {
     /// 2 = write, 3 = read.
@@ -33,13 +33,13 @@ pub enum SpiState {
     AddressLow,
     /// Number of words.
     Length,
-    /// Nothing: the first word is being read.
+    /// Idle byte: the first word is being read.
     Turnaround,
     /// A word, in either direction.
     Data,
     /// Check sum, in either direction.
     Crc,
-    /// Nothing until the frame ends.
+    /// Ignored until the frame ends.
     Ignore,
 }
 
@@ -54,11 +54,11 @@ pub struct SpiFront {
     pub sck: Signal<In, Bit>,
     /// Chip select, active low, asynchronous.
     pub cs_n: Signal<In, Bit>,
-    /// Data from the host, taken with the rising edge, asynchronous.
+    /// Data from the host, sampled at the rising edge, asynchronous.
     pub mosi: Signal<In, Bit>,
     /// Data to the host; changes after the falling edge.
     pub miso: Signal<Out, Bit>,
-    /// The card drives `miso`, straight from `cs_n`.
+    /// The card drives `miso`; combinational from `cs_n`.
     pub miso_enable: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
@@ -85,7 +85,7 @@ pub struct SpiFront {
     /// Meaning of the byte.
     #[start(SpiState::Command)]
     state: Reg<SpiState>,
-    /// Bits of the byte that have been taken.
+    /// Bits of the byte received so far.
     bit_count: Reg<Bits<3>>,
     /// Last eight bits from the host.
     byte_in: Reg<Bits<8>>,
@@ -102,11 +102,11 @@ pub struct SpiFront {
     load_word: Reg<Bit>,
     /// High until the next falling edge loads the check sum.
     load_crc: Reg<Bit>,
-    /// High if a word was not ready in time: the check sum of the frame is sent wrong.
+    /// High if a word was not ready in time: the check sum of the frame is inverted.
     late: Reg<Bit>,
     /// High if the frame is a write.
     writing: Reg<Bit>,
-    /// Words of the frame that are left.
+    /// Remaining words of the frame.
     words_left: Reg<Bits<8>>,
     /// Word address of the next access.
     address: Reg<Bits<11>>,
@@ -114,7 +114,7 @@ pub struct SpiFront {
     out_of_range: Reg<Bit>,
     /// Word to write.
     data: Reg<Bits<32>>,
-    /// High while an access waits for the one before.
+    /// High while an access waits for the previous one.
     asked: Reg<Bit>,
     /// High while an access runs.
     busy: Reg<Bit>,
@@ -126,7 +126,7 @@ pub struct SpiFront {
     access_outside: Reg<Bit>,
     /// High if the access is a write.
     access_writes: Reg<Bit>,
-    /// High if the last word to write was refused: wrong check sum, or an access was still running.
+    /// High if the last word to write was rejected: wrong check sum, or an access was still running.
     refused: Reg<Bit>,
     /// High while the host selects this slave.
     selected: Signal<Local, Bit>,
@@ -138,7 +138,7 @@ pub struct SpiFront {
     crc_bit: Signal<Local, Bit>,
     /// High while bits enter the CRC.
     crc_runs: Signal<Local, Bit>,
-    /// High for one cycle when the address moves on.
+    /// High for one cycle when the address advances.
     step_address: Signal<Local, Bit>,
     /// High while an access waits or runs.
     waits: Signal<Local, Bit>,
@@ -152,7 +152,7 @@ pub struct SpiFront {
     polynomial: Constant<Bits<16>>,
     /// First word of an answer if the last write was accepted.
     accepted_word: Constant<Bits<32>>,
-    /// First word of an answer if the last write was refused.
+    /// First word of an answer if the last write was rejected.
     refused_word: Constant<Bits<32>>,
 }
 
@@ -210,7 +210,7 @@ impl Logic for SpiFront {
             }
         }
 
-        // One access after the other, each with an address and a direction of its own: the next frame may have begun.
+        // One access after the other, each with its own address and direction, because the next frame may have begun.
         self.request.d.next = false;
         self.step_address.next = false;
         self.waits.next = self.asked.q.val() | self.busy.q.val();
@@ -248,7 +248,7 @@ impl Logic for SpiFront {
                     self.state.d.next = SpiState::Length;
                     self.address.d.next =
                         self.address.q.val() | bit_cast::<11, 8>(self.byte_in.q.val());
-                    // The first word is there before the host can ask for it.
+                    // The first word is ready before the host can clock it out.
                     self.asked.d.next = !self.writing.q.val();
                 }
                 SpiState::Length => {
@@ -290,7 +290,7 @@ impl Logic for SpiFront {
                     if self.byte_count.q.val().get_bit(0) {
                         self.state.d.next = SpiState::Ignore;
                         if self.writing.q.val() {
-                            // Data followed by their check sum leave 0.
+                            // Data followed by their check sum give a CRC of 0.
                             self.refused.d.next = self.crc.q.val().any() | self.waits.val();
                             if !self.crc.q.val().any() & !self.waits.val() {
                                 self.asked.d.next = true;
@@ -308,12 +308,12 @@ impl Logic for SpiFront {
             }
         }
 
-        // A clock that is too fast must not pass for an answer: the check sum goes out wrong.
+        // If the clock is too fast the answer must be invalid: send a wrong check sum.
         self.crc_sent.next = self.crc.q.val();
         if self.late.q.val() {
             self.crc_sent.next = !self.crc.q.val();
         }
-        // What goes out changes with the falling edge.
+        // The output changes with the falling edge.
         if self.fall.val() {
             self.shift_out.d.next = self.shift_out.q.val() << 1;
             self.load_word.d.next = false;
@@ -337,7 +337,7 @@ impl Logic for SpiFront {
             }
         }
 
-        // Between frames; a word that is being written has what it needs.
+        // Between frames; a pending write has its address and data.
         if !self.selected.val() {
             self.state.d.next = SpiState::Command;
             self.bit_count.d.next = 0.into();
@@ -362,26 +362,26 @@ impl Logic for SpiFront {
         self.words.data_in.next = self.data.q.val();
         self.bank.in_range.next = !self.access_outside.q.val();
         self.miso.next = self.shift_out.q.val().get_bit(31);
-        // No register: the line is free as soon as the frame ends.
+        // Combinational: the line is free as soon as the frame ends.
         self.miso_enable.next = !self.cs_n.val();
     }
 }
 
 card_top! {
-    /// The whole core behind SPI; the number of channels is that of [`CardConfig::channels`].
+    /// The whole core with an SPI front; [`CardConfig::channels`] sets the number of channels.
     SpiCard, SpiCardParts: front: SpiFront, irq_o
     in {
         /// Serial clock, idle low, asynchronous; at most an eighth of the system clock.
         spi_sck_i: Bit => sck,
         /// Chip select, active low, asynchronous.
         spi_cs_n_i: Bit => cs_n,
-        /// Data from the host, taken with the rising edge, asynchronous.
+        /// Data from the host, sampled at the rising edge, asynchronous.
         spi_mosi_i: Bit => mosi,
     }
     out {
         /// Data to the host; changes after the falling edge.
         spi_miso_o: Bit => miso,
-        /// The card drives `spi_miso_o`, straight from `spi_cs_n_i`.
+        /// The card drives `spi_miso_o`; combinational from `spi_cs_n_i`.
         spi_miso_oe: Bit => miso_enable,
     }
     pushed {}
@@ -394,7 +394,7 @@ impl SpiCard {
         Self::behind(Default::default(), CardCore::new(config))
     }
 
-    /// A card with other waits of its services, for quick tests.
+    /// A card with other waiting times of its services, for quick tests.
     pub fn with_times(config: &CardConfig, service: &ServiceTimes) -> Self {
         Self::behind(Default::default(), CardCore::with_times(config, service))
     }

@@ -1,12 +1,12 @@
-//! Strobes of an asynchronous bus, brought into the system clock domain.
+//! Strobes of an asynchronous bus, synchronised to the system clock.
 //!
 //! ```text
 //! cs_n, rd_n, wr_n, register_at --SyncReg x2--> reading, register | written, written_register
-//! data_in --SyncReg, as long as a write lasts--> written_data
+//! data_in --SyncReg, while a write lasts--> written_data
 //! ```
 //!
-//! Data of a write need one register: the strobe itself closes it, when they have stood still for a clock, so whether a bit is still taken
-//! at that edge makes no difference; and it is looked at two clocks later.
+//! Data of a write need only one register. The strobe stops it after the data have been stable for a clock, so it does not matter whether a bit is
+//! still sampled at that edge; the value is used two clocks later.
 
 use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block};
@@ -29,15 +29,15 @@ pub struct BusStrobes {
     pub register_at: Signal<In, Bits<3>>,
     /// Data from the processor, asynchronous.
     pub data_in: Signal<In, Bits<16>>,
-    /// The register that is selected, two clocks late.
+    /// Selected register, two clocks late.
     pub register: Signal<Out, Bits<3>>,
-    /// It is being read.
+    /// The selected register is being read.
     pub reading: Signal<Out, Bit>,
     /// Strobe: a write has ended.
     pub written: Signal<Out, Bit>,
-    /// The register that was written.
+    /// Register that was written.
     pub written_register: Signal<Out, Bits<3>>,
-    /// What was written.
+    /// Written data.
     pub written_data: Signal<Out, Bits<16>>,
     /// Parity of the data at the pins.
     pub written_sum: Signal<Out, Bit>,
@@ -87,7 +87,7 @@ impl Logic for BusStrobes {
 
         self.register.next = self.register_1.q.val();
         self.reading.next = self.cs_1.q.val() & self.rd_1.q.val();
-        // What is written is what stood there last before the strobe ended.
+        // The written data are those at the last clock before the strobe ended.
         self.is_writing.next = self.cs_1.q.val() & self.wr_1.q.val();
         self.was_writing.d.next = self.is_writing.val();
         if self.is_writing.val() {

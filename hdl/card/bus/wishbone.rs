@@ -5,8 +5,8 @@
 //! dat, ack, err <---------------------------- finished
 //! ```
 //!
-//! `ack` and `err` come from registers, one cycle each. A write that does not select all four bytes is refused with `err`; a read
-//! gives the whole word whatever it selects. If `cyc` or `stb` falls before the answer there is none, and a write that has begun is carried out.
+//! `ack` and `err` come from registers, one cycle each. A write that does not select all four bytes gets `err`; a read
+//! returns the whole word for any `sel`. If `cyc` or `stb` falls before the answer there is no answer; a write that has begun is completed.
 //!
 //! Ref: OpenCores, Wishbone B4, chapter 3 (classic cycles), 32-bit port, granularity 8 bits.
 
@@ -28,7 +28,7 @@ pub struct WishboneFront {
     pub reset: Signal<In, Bit>,
     /// A bus cycle is under way.
     pub cyc: Signal<In, Bit>,
-    /// With `cyc`: the master asks for a transfer.
+    /// With `cyc`: the master requests a transfer.
     pub stb: Signal<In, Bit>,
     /// Write.
     pub we: Signal<In, Bit>,
@@ -36,13 +36,13 @@ pub struct WishboneFront {
     pub adr: Signal<In, Bits<11>>,
     /// Word to write.
     pub dat_write: Signal<In, Bits<32>>,
-    /// Bytes of it; a write takes all four.
+    /// Byte selects; a write must select all four.
     pub sel: Signal<In, Bits<4>>,
     /// Word read, valid with `ack`.
     pub dat_read: Signal<Out, Bits<32>>,
-    /// The transfer has been done.
+    /// The transfer is complete.
     pub ack: Signal<Out, Bit>,
-    /// The transfer has been refused: a write of a part of a word.
+    /// The transfer is rejected: a write to part of a word.
     pub err: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
@@ -56,21 +56,21 @@ pub struct WishboneFront {
     busy: Reg<Bit>,
     /// High for one cycle when the transfer has been carried out.
     acknowledge: Reg<Bit>,
-    /// High for one cycle when the transfer is refused.
+    /// High for one cycle when the transfer is rejected.
     error: Reg<Bit>,
     /// High for one cycle when a word access begins.
     request: Reg<Bit>,
-    /// High if the master has left the transfer before its end; cleared by the next transfer.
+    /// High if the master has dropped the transfer before its end; cleared by the next transfer.
     abandoned: Reg<Bit>,
     /// Word address of the transfer.
     address: Reg<Bits<11>>,
     /// High if the transfer is a write.
     writing: Reg<Bit>,
-    /// High while the master asks for a transfer.
+    /// High while the master requests a transfer.
     asks: Signal<Local, Bit>,
-    /// High for one cycle when a transfer is taken.
+    /// High for one cycle when a transfer is accepted.
     start: Signal<Local, Bit>,
-    /// High if the transfer writes a part of a word.
+    /// High if the transfer writes part of a word.
     refused: Signal<Local, Bit>,
 }
 
@@ -84,7 +84,7 @@ impl Logic for WishboneFront {
         self.words.end_snapshot.next = false;
         AccessOut::link(&mut self.bank, &mut self.words.bank);
 
-        // Also later than the first cycle of a transfer, if one that was abandoned kept it waiting.
+        // Also later than the first cycle of a transfer, if an abandoned one delayed it.
         self.asks.next = self.cyc.val() & self.stb.val();
         self.start.next =
             self.asks.val() & !self.busy.q.val() & !self.acknowledge.q.val() & !self.error.q.val();
@@ -123,12 +123,12 @@ impl Logic for WishboneFront {
 }
 
 card_top! {
-    /// The whole core behind Wishbone; the number of channels is that of [`CardConfig::channels`].
+    /// The whole core with a Wishbone front; [`CardConfig::channels`] sets the number of channels.
     WishboneCard, WishboneCardParts: WishboneFront
     in {
         /// A bus cycle is under way.
         wb_cyc_i: Bit => cyc,
-        /// With `wb_cyc_i`: the master asks for a transfer.
+        /// With `wb_cyc_i`: the master requests a transfer.
         wb_stb_i: Bit => stb,
         /// Write.
         wb_we_i: Bit => we,
@@ -136,15 +136,15 @@ card_top! {
         wb_adr_i: Bits<11> => adr,
         /// Word to write.
         wb_dat_i: Bits<32> => dat_write,
-        /// Bytes of it; a write takes all four.
+        /// Byte selects; a write must select all four.
         wb_sel_i: Bits<4> => sel,
     }
     out {
         /// Word read, valid with `wb_ack_o`.
         wb_dat_o: Bits<32> => dat_read,
-        /// The transfer has been done.
+        /// The transfer is complete.
         wb_ack_o: Bit => ack,
-        /// The transfer has been refused: a write of a part of a word.
+        /// The transfer is rejected: a write to part of a word.
         wb_err_o: Bit => err,
     }
 }

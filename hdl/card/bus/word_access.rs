@@ -1,4 +1,4 @@
-//! Word access: a 32-bit word of a bus becomes accesses of the register bank's bytes.
+//! Word access: converts a 32-bit access of a bus into byte accesses of the register bank.
 //!
 //! ```text
 //! request, word_address --> [result word: new snapshot?] --> lane 0 .. 3: access, done --> data --> finished
@@ -6,13 +6,13 @@
 //!                                 +--> reading
 //! ```
 //!
-//! **Snapshot.** Reads of result words at rising addresses are of one snapshot, as one burst of the UART is: the first of them
-//! takes the snapshot, `reading` holds it. A read of the same or of a lower address takes the next one. A snapshot ends by itself
-//! 7 to 8 us after its last read, so that a host that stops in the middle does not stop the results.
+//! **Snapshot.** Reads of result words at rising addresses belong to one snapshot, like one burst of the UART. The first of them
+//! takes the snapshot, and `reading` holds it. A read of the same or of a lower address takes the next one. A snapshot ends automatically
+//! 7 to 8 us after its last read, so that a host that stops in the middle does not freeze the results.
 //!
 //! From `request` to `finished`: 17 cycles for a word that is read, 3 more for the first of a snapshot, 26 for a word of a service or line
-//! monitor; 5 for a strobe; a turn of the configuration ring (12 cycles for the card and each channel) and 4 for a configuration word,
-//! read or written, and for a word that is written to a service or line monitor.
+//! monitor; 5 for a strobe. A configuration word, read or written, takes a turn of the configuration ring (12 cycles for the card and each channel) plus 4.
+//! So does a write to a service or line monitor.
 
 use crate::card::ports::AccessOut;
 use rtl_design::reg::Reg;
@@ -22,7 +22,7 @@ use rust_hdl::prelude::*;
 /// Microseconds without a read after which a snapshot ends.
 pub const QUIET_US: u64 = 8;
 
-/// A word in four bytes.
+/// A word as four bytes.
 #[derive(LogicBlock, Block)]
 #[properties("../../properties/word_access.sv")]
 pub struct WordAccess {
@@ -32,7 +32,7 @@ pub struct WordAccess {
     pub reset: Signal<In, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// Strobe: begin an access; not before the last one has finished.
+    /// Strobe: begin an access; only after the last one has finished.
     pub request: Signal<In, Bit>,
     /// Word address, constant from `request` to `finished`.
     pub address_in: Signal<In, Bits<11>>,
@@ -40,7 +40,7 @@ pub struct WordAccess {
     pub write_in: Signal<In, Bit>,
     /// Word to write, with `request`.
     pub data_in: Signal<In, Bits<32>>,
-    /// The front is within a burst: the snapshot does not end by itself.
+    /// The front is within a burst: the snapshot does not end automatically.
     pub keep_snapshot: Signal<In, Bit>,
     /// Strobe: the snapshot ends.
     pub end_snapshot: Signal<In, Bit>,
@@ -59,11 +59,11 @@ pub struct WordAccess {
     access_strobe: Reg<Bit>,
     /// High for one cycle when the word is complete.
     end_strobe: Reg<Bit>,
-    /// High if one access does the whole word: a write, or a configuration word.
+    /// High if one access handles the whole word: a write, or a configuration word.
     whole: Reg<Bit>,
     /// Cycles until the first byte of a new snapshot is read; 0 = none.
     settle: Reg<Bits<2>>,
-    /// High while results are held for reads that belong together.
+    /// High while results are held for a series of reads.
     holding: Reg<Bit>,
     /// Low address bits of the last result word read.
     last_read: Reg<Bits<7>>,
@@ -75,7 +75,7 @@ pub struct WordAccess {
     is_result: Signal<Local, Bit>,
     /// High if the address is a configuration word.
     is_config: Signal<Local, Bit>,
-    /// High if the word belongs to the snapshot that is held: its address is above the last one.
+    /// High if the word belongs to the held snapshot: its address is above the last one.
     goes_on: Signal<Local, Bit>,
 }
 
@@ -112,9 +112,9 @@ impl Logic for WordAccess {
             self.quiet_us.d.next = 0.into();
         }
 
-        // Written words are taken at once, configuration words pass in one access; what else is read comes byte by byte.
+        // A write accepts its word at once, and one access passes a configuration word. All other words are read byte by byte.
         if self.request.val() {
-            // What is absent reads as 0.
+            // Absent words read 0.
             self.data.d.next = 0.into();
             if self.write_in.val() {
                 self.data.d.next = self.data_in.val();

@@ -1,4 +1,4 @@
-//! A card out of its configuration: how many of each block it has.
+//! Builds a card from its configuration: the number of each block.
 
 use super::*;
 use crate::replicate::numbered;
@@ -9,7 +9,7 @@ impl CardCore {
         Self::with_times(config, &service_times(config))
     }
 
-    /// A card with other waits of its services.
+    /// A card with other waiting times of its services.
     pub fn with_times(config: &CardConfig, service: &ServiceTimes) -> Self {
         let n = Counts::of(config);
         let is_endat = |i: usize| config.channels[i].is_endat();
@@ -132,7 +132,7 @@ impl CardCore {
     }
 }
 
-/// How many there are of each.
+/// Number of blocks of each kind.
 struct Counts {
     channels: usize,
     own_triggers: usize,

@@ -1,4 +1,4 @@
-//! Kernel of the core of a card: it wires, and little else.
+//! Kernel of the core of a card: mostly wiring.
 
 use super::*;
 use crate::ports::{AdditionalDataOut, FrameResultOut, PortSettingsOut};
@@ -22,7 +22,7 @@ impl Logic for CardCore {
         self.wire_runs();
     }
 
-    /// The card's trigger, and what each channel makes of it.
+    /// The card's trigger, and the trigger of each channel.
     fn share_trigger(&mut self) {
         self.trigger.pin.next = self.trigger_i.val();
         connect!(self.trigger <= self.bank; register = trigger_now, sources, period_cycles);
@@ -52,7 +52,7 @@ impl Logic for CardCore {
         self.bank.trigger_count.next = self.trigger.trigger_count.val();
     }
 
-    /// From the first channel to the last: read bytes and "some channel" signals. The ring runs the other way.
+    /// From the first channel to the last: read bytes, and the OR of the signals of all channels. The ring runs the other way.
     fn wire_channels(&mut self) {
         self.read_link[0].next = 0.into();
         self.service_link[0].next = 0.into();
@@ -77,7 +77,7 @@ impl Logic for CardCore {
             );
             self.port[i].window.host_read.next = self.bank.service.service_read.val().get_bit(i);
             self.port[i].window.host_write.next = self.bank.service.service_write.val().get_bit(i);
-            // A word that is not asked for is 0.
+            // A word that is not selected is 0.
             self.selected[i].next = 0.into();
             if self.bank.service.service_channels.val().get_bit(i) {
                 self.selected[i].next = self.port[i].window.host_word.val();
@@ -129,7 +129,7 @@ impl Logic for CardCore {
         }
     }
 
-    /// Services, each for two channels; the last one may have one only. A word that was not asked for is 0.
+    /// Services, each for two channels; the last one may have only one. A word that is not selected is 0.
     fn wire_services(&mut self) {
         self.in_service.next = !self.bank.service.service_line.val();
         for i in 0..self._served {
@@ -287,7 +287,7 @@ impl Logic for CardCore {
         self.part_byte[2].next = 0.into();
     }
 
-    /// Channels with requests: the registers see a result when its additional data are there, too.
+    /// Channels with requests: the registers receive a result together with its additional data.
     fn wire_additional_data(&mut self) {
         for i in 0..self._infos {
             connect!(self.whole[i] <= self; clock = clk_i, reset = rst_i);
@@ -334,7 +334,7 @@ impl Logic for CardCore {
         }
     }
 
-    /// For the second controller: what the registers show, as it is now.
+    /// For the second controller: the current content of the registers.
     fn wire_second(&mut self) {
         for i in 0..self._seconds {
             connect!(self.second[i] <= self; clock = clk_i, reset = rst_i);

@@ -1,4 +1,4 @@
-//! What a card's parts are made of, as its configuration wants them.
+//! Parts of a card, built from its configuration.
 
 use crate::card::channel_trigger::ChannelTrigger;
 use crate::config::{CardConfig, ChannelConfig};
@@ -13,7 +13,7 @@ pub(super) fn blink_bit(system_hz: u64, hz: u64) -> u64 {
     u64::from((system_hz / (2 * hz)).max(1).ilog2())
 }
 
-/// What decides whether a channel takes a trigger, of so many channels.
+/// Trigger logic of each channel, for `channels` channels.
 pub(super) fn channel_triggers(card: &CardConfig, channels: usize) -> Vec<ChannelTrigger> {
     let of = |channel: &ChannelConfig| {
         let own = channel.spec.trigger.unwrap_or_default();
@@ -22,7 +22,7 @@ pub(super) fn channel_triggers(card: &CardConfig, channels: usize) -> Vec<Channe
     card.channels.iter().take(channels).map(of).collect()
 }
 
-/// The times of a channel that are fixed in the design.
+/// Fixed times of a channel.
 fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
     FixedTimes {
         ready_low_cycles: channel.ready_low_cycles,
@@ -32,7 +32,7 @@ fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
     }
 }
 
-/// The features of its channels besides those of a service.
+/// Features of the channels, without those of a service.
 fn line(card: &CardConfig) -> Features {
     Features {
         alignment: card.line.alignment,
@@ -52,7 +52,7 @@ fn line_start(card: &CardConfig) -> LineStart {
     }
 }
 
-/// Parts and waits of a card's services.
+/// Features and waiting times of a card's services.
 pub fn service_times(config: &CardConfig) -> ServiceTimes {
     ServiceTimes {
         initialise: config.service.initialise,
@@ -66,19 +66,19 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
     }
 }
 
-/// Channels from the first one on that have a place at a service: to the last one that speaks EnDat.
+/// Number of channels with a place at a service: up to the last one that speaks EnDat.
 pub(super) fn served_channels(card: &CardConfig) -> usize {
     let last = card.endat_channels().last();
     last.filter(|_| card.service.requests)
         .map_or(0, |(index, _)| index + 1)
 }
 
-/// Services of a card; each has room for [`CHANNELS_SERVED`] channels that follow each other.
+/// Number of services of a card; each serves up to [`CHANNELS_SERVED`] consecutive channels.
 pub fn services(card: &CardConfig) -> usize {
     served_channels(card).div_ceil(CHANNELS_SERVED)
 }
 
-/// The port of a channel, at a service of the card where there is one.
+/// The port of a channel, connected to a service if the card has one.
 pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
     let channel = &card.channels[index];
     if !channel.is_endat() {
@@ -95,7 +95,7 @@ pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> E
     )
 }
 
-/// The first channel's port alone, for those who bring registers and triggers of their own.
+/// The first channel's port alone, for a design with separate registers and triggers.
 pub fn bare_port(card: &CardConfig) -> EncoderPort {
     let (channel, service) = (&card.channels[0], service_times(card));
     if !channel.is_endat() {

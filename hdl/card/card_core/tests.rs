@@ -16,13 +16,13 @@ mod own_triggers;
 /// Cycles of a UART bit.
 const BIT: usize = 8;
 
-/// A card as it is elaborated, as native code, with its host: the UART is driven bit by bit. `tests/elaborate` compares such a card with its
+/// An elaborated card as native code, with its host, which drives the UART bit by bit. `tests/elaborate` compares such a card with its
 /// kernels.
 struct Host {
     card: Compiled,
-    /// Where a net is, by its hierarchical name.
+    /// Index of each net, by its hierarchical name.
     nets: Arc<BTreeMap<String, usize>>,
-    /// Ports and nets of every cycle.
+    /// Ports and nets that are used every cycle.
     rx_port: PortId,
     tx_net: usize,
     clk_nets: Vec<usize>,
@@ -115,7 +115,7 @@ impl Host {
         self.set(&format!("endat_data{channel}_i"), level);
     }
 
-    /// What a net has now.
+    /// Current value of a net.
     fn net(&mut self, name: &str) -> u64 {
         let Some(at) = self.nets.get(name) else {
             panic!("{name}: no such net");
@@ -195,7 +195,7 @@ fn address(block: RegisterBlock, register: &str, channel: usize) -> u16 {
     block.address(block.register(register).unwrap(), channel)
 }
 
-/// Every word of the card: its address, access and start value.
+/// Every word of the card: address, access and start value.
 fn words() -> Vec<(u16, Access, u32)> {
     let config = test_config();
     let words = crate::regs::words(&config).into_iter();
@@ -221,7 +221,7 @@ fn every_address_reads_as_the_table_says_after_reset() {
             assert_eq!(got, expected, "word {at:#x}");
         }
     }
-    // No result yet: everything is 0 but the age.
+    // No result yet: everything is 0 except the age.
     for at in [
         0x180, 0x181, 0x182, 0x183, 0x184, 0x186, 0x187, 0x190, 0x1ff,
     ] {
@@ -253,7 +253,7 @@ fn every_rw_word_keeps_what_is_written_and_no_other_word_changes() {
         ]
         .concat()
     };
-    // Every byte of every word another one; no trigger source, so that the channels do not work with them.
+    // A different value for every byte of every word; no trigger source, so that the channels stay idle.
     for (i, word) in expected.iter_mut().enumerate() {
         *word = 0x0f1e_2d38u32.wrapping_add(0x1121_3141 * i as u32) & !7;
     }
@@ -324,7 +324,7 @@ fn a_disabled_source_does_not_trigger() {
     host.write(address(CARD, "trigger_now", 0), &[0xffff_fffe]);
     host.idle(100);
     assert!(host.falls.iter().all(Vec::is_empty));
-    // A read of the strobe, with the trigger bit left over from a write to elsewhere.
+    // A read of the strobe, with the trigger bit left over from a write to another word.
     host.write(address(CARD, "id", 0), &[1]);
     assert_eq!(host.read(address(CARD, "trigger_now", 0), 1), [0]);
     assert!(host.falls.iter().all(Vec::is_empty));
@@ -346,7 +346,7 @@ fn status(word: u32) -> (u32, u32) {
 
 #[test]
 fn one_burst_read_shows_both_channels_after_the_same_trigger_while_results_come_in() {
-    // DATA is high, so every trigger gives a result with cause 1 at once; one each 7 us, a read takes 58 us.
+    // DATA is high, so every trigger gives a result with cause 1 at once; one every 7 us, and a read takes 58 us.
     let mut host = Host::new(true, 2);
     let mut last = None;
     for pause in [300, 390, 555] {
@@ -426,7 +426,7 @@ fn cards_of_one_and_of_four_channels_reach_every_channel() {
         let last = channels - 1;
         let count = CARD.register("capabilities").unwrap();
         assert_eq!(host.read(count.offset, 1)[0] & 0xff, channels as u32);
-        // A burst at the fastest rate: the ring has turned before the next word is there.
+        // A burst at the fastest rate: the ring has completed its turn before the next word arrives.
         let at = 0x108 + 8 * last as u16;
         let values = [0x1111_1110, 0x2222_2222, 0x3333_3333];
         let first = host.read(0x108, 3);
@@ -435,7 +435,7 @@ fn cards_of_one_and_of_four_channels_reach_every_channel() {
         if channels > 1 {
             assert_eq!(host.read(0x108, 3), first);
         }
-        assert_eq!(host.read(at + 8, 3), [0; 3], "a channel that is not there");
+        assert_eq!(host.read(at + 8, 3), [0; 3], "an absent channel");
         host.write(address(CARD, "trigger_now", 0), &[1]);
         assert_eq!(
             status(host.read(RESULT.base + 8 * last as u16, 1)[0]),
@@ -450,11 +450,11 @@ fn a_t_format_channel_has_its_words_and_an_endat_channel_none_of_them() {
     host.idle(3_000);
     let at = |register, channel| address(T_FORMAT, register, channel);
     assert_eq!(host.read(at("send", 0), 64), [0; 64]);
-    // An ID that there is not: refused at once, so nobody has to be on the line.
+    // An unknown ID: rejected at once, so no encoder is needed.
     let id = 4 << 16;
     host.write(at("send", 0), &[id]);
     host.write(at("parts", 1) + 1, &[id]);
-    assert_eq!(host.read(at("answer", 0), 16), [0; 16], "no such word");
+    assert_eq!(host.read(at("answer", 0), 16), [0; 16], "absent words");
     host.write(at("send", 1), &[id]);
     let answer = host.read(at("answer", 1), 1)[0];
     assert_eq!(answer >> 12, 1 << 4 | cause::UNKNOWN_REQUEST as u32);
@@ -473,7 +473,7 @@ fn a_trigger_starts_both_protocols() {
     host.idle(8_000);
     host.write(address(CARD, "trigger_now", 0), &[1]);
     assert_eq!(host.net("endat_clk1_o"), 1, "T-format has no clock");
-    // Nobody answers: in the T-format channel that is known soonest, and the host sees both results together.
+    // No encoder answers: the T-format channel detects this first, and the host reads both results together.
     host.idle(4_000);
     assert_eq!(host.sequence(1), 1);
     assert_eq!(host.net("core.port_1_cause"), cause::NO_ANSWER);

@@ -25,7 +25,7 @@ fn step(uut: &mut ChannelRegisters) {
     tick(uut, |u, level| u.clock.next = level.into());
 }
 
-/// A word of the held result, byte by byte, as the bank reads it.
+/// A word of the held result, read byte by byte as the bank does.
 fn read(uut: &mut ChannelRegisters, word: usize) -> u32 {
     let mut bytes = [0; 4];
     for (lane, byte) in bytes.iter_mut().enumerate() {
@@ -61,13 +61,13 @@ fn set(uut: &mut ChannelRegisters, register: &str, field: &str, value: u64) {
         ("age_recovery", "age_us") => uut.result.age_us.next = value.into(),
         ("age_recovery", "recovery_cycles") => uut.recovery_cycles.next = value.into(),
         ("age_recovery", "stale") => uut.trigger.next = value == 1,
-        other => panic!("the table has a field that the test does not know: {other:?}"),
+        other => panic!("field of the table unknown to the test: {other:?}"),
     }
 }
 
 #[test]
 fn every_result_field_is_where_the_table_says() {
-    // The additional data stand elsewhere.
+    // Other tests cover the additional data.
     for register in &RESULT.registers[..6] {
         for field in register.fields {
             let mut uut = new();
@@ -144,10 +144,10 @@ fn output(uut: &ChannelRegisters, field: &str) -> u64 {
         "field_gap_us" => uut.field_gap_us.val().to_u64(),
         "start_timeout_us" => uut.settings.start_timeout_us.val().to_u64(),
         "recovery_limit_cycles" => uut.settings.recovery_limit_cycles.val().to_u64(),
-        // For the host only: the ring keeps them.
+        // Only the host uses them: the ring stores them.
         "multi_turn_bits" => kept("timing", field, uut.ring.word1.val().to_u64()),
         "range" => kept("limits", field, uut.ring.word2.val().to_u64()),
-        other => panic!("the table has a field that the test does not know: {other}"),
+        other => panic!("field of the table unknown to the test: {other}"),
     }
 }
 
@@ -199,7 +199,7 @@ fn every_configuration_field_is_where_the_table_says() {
     }
 }
 
-/// The words of a block, as they stand on the ring after a turn with `spoilt` bits inverted on the way in.
+/// The words of a block on the ring after a turn with the bits of `spoilt` inverted on the way in.
 fn turn_in_spoilt(uut: &mut ChannelRegisters, words: [u32; 3], spoilt: [u32; 3]) {
     uut.ring_turn.next = true;
     uut.ring_home.next = false;
@@ -213,7 +213,7 @@ fn turn_in_spoilt(uut: &mut ChannelRegisters, words: [u32; 3], spoilt: [u32; 3])
     step(uut);
 }
 
-/// Catches settings that change under a frame, or in the cycle in which its trigger is looked at.
+/// Catches settings that change during a frame, or in the cycle in which its trigger is evaluated.
 #[test]
 fn settings_stay_while_the_channel_is_busy_and_in_the_cycle_of_a_trigger() {
     let words = config_words(&test_config(), Some(0));
@@ -290,7 +290,7 @@ fn a_result_is_owed_from_a_trigger_that_is_taken_to_its_result() {
     uut.busy.next = true;
     assert!(
         !pulse(&mut uut, true, false),
-        "an overrun gives no result of its own"
+        "an overrun gives no separate result"
     );
     uut.busy.next = false;
     assert!(
@@ -300,7 +300,7 @@ fn a_result_is_owed_from_a_trigger_that_is_taken_to_its_result() {
     uut.busy.next = true;
     assert!(
         !pulse(&mut uut, true, false),
-        "another channel's trigger: nobody waits for this one"
+        "another channel's trigger: the result of this channel is not awaited"
     );
 }
 
@@ -318,7 +318,7 @@ fn held_words_grow_old_by_themselves() {
     (0..5).for_each(|_| step(&mut uut));
     uut.show.next = false;
     step(&mut uut);
-    assert_eq!(read(&mut uut, 5), 0xfff5, "stands still while it is read");
+    assert_eq!(read(&mut uut, 5), 0xfff5, "frozen while it is read");
     uut.trigger.next = true;
     (0..20).for_each(|_| step(&mut uut));
     assert_eq!(read(&mut uut, 5), 0xfff5);
@@ -327,6 +327,6 @@ fn held_words_grow_old_by_themselves() {
     assert_eq!(
         read(&mut uut, 5),
         1 << 30 | 0xffff,
-        "the time did not; it stops there"
+        "the time did not; the age stops there"
     );
 }

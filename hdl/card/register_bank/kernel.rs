@@ -23,7 +23,7 @@ impl Logic for RegisterBank {
         self.answer();
     }
 
-    /// Address and direction of an access are kept from its start to its end, whatever the front shows.
+    /// Address and direction of an access are kept from its start to its end, whatever the front does.
     fn hold_access(&mut self) {
         self.busy.next = self.turning.q.val() | self.ended.q.val();
         self.starts.next = self.front.access.val() & !self.busy.val();
@@ -36,8 +36,8 @@ impl Logic for RegisterBank {
         self.is_inside.next = self.held_inside.q.val();
     }
 
-    /// One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
-    /// They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
+    /// One turn for a configuration word. The counters run one cycle ahead of the ring, which leaves a full cycle for comparing them.
+    /// They also time the halves of a written RAM word; every other access ends when its byte is ready.
     fn turn(&mut self) {
         self.whole_turn.next =
             self.config_page.q.val() | (self.is_write.q.val() & !self.service_skip.q.val());
@@ -74,7 +74,7 @@ impl Logic for RegisterBank {
         self.front.done.next = self.done_strobe.q.val();
     }
 
-    /// Configuration: the ring carries 3 of the 8 words that a block has room for.
+    /// Configuration: the ring holds 3 of the 8 words of a block.
     fn wire_ring(&mut self) {
         self.low_page.next =
             self.front.in_range.val() & !self.front.word_address.val().get_bits::<2>(9).any();
@@ -167,7 +167,7 @@ impl Logic for RegisterBank {
             !self.low_page.val() | (self.low_address.val() != self.trigger_count_at.val());
     }
 
-    /// Strobes, and the settings of the card.
+    /// Strobes and settings of the card.
     fn obey(&mut self) {
         self.strobe.next = self.starts.val() & self.front.write.val() & self.low_page.val();
         self.trigger_strobe.d.next = self.strobe.val()
@@ -188,7 +188,7 @@ impl Logic for RegisterBank {
         }
         self.sources.next = self.active_sources.q.val();
         self.disabled.next = field!(self.ring.word0.val(), card_config.trigger_sources.disabled);
-        // In the cycle in which they are taken over: the first words of card and channels.
+        // In the cycle in which they take effect: the first words of card and channels.
         self.restart.next = self.done_strobe.q.val()
             & self.is_write.q.val()
             & self.config_page.q.val()
@@ -198,7 +198,7 @@ impl Logic for RegisterBank {
 
     /// Results.
     fn show_results(&mut self) {
-        // Reading blocks a cycle late: the first byte is read later still.
+        // Reading blocks one cycle late; the first byte is read even later.
         self.read_before.d.next = self.front.reading.val();
         self.show.next = !self.read_before.q.val();
         self.blocked_now.next = self.front.reading.val() | self.hold.q.val();
@@ -283,12 +283,12 @@ impl Logic for RegisterBank {
         self.service_page.next = self.has_service.val()
             & self.front.in_range.val()
             & self.front.word_address.val().get_bit(10);
-        // Line monitors: 64 words each, from 0x200 on, in the same way.
+        // Line monitors: 64 words each, from 0x200 on, accessed likewise.
         self.line_page.next = self.has_line.val()
             & self.front.in_range.val()
             & !self.front.word_address.val().get_bit(10)
             & self.front.word_address.val().get_bit(9);
-        // Ports of other protocols than EnDat: 8 words each, from 0x0C0 on, in the same way.
+        // Ports of other protocols than EnDat: 8 words each, from 0x0C0 on, accessed likewise.
         self.port_page.next = self.has_others.val()
             & self.low_page.val()
             & !self.front.word_address.val().get_bit(8)
@@ -338,7 +338,7 @@ impl Logic for RegisterBank {
         if !self.busy.val() {
             self.line_selected.d.next = self.line_page.val() | self.port_page.val();
             self.service_skip.d.next = !self.word_page.val();
-            // A channel has the words of its own protocol only.
+            // A channel has only the words of its own protocol.
             self.service_selected.d.next = self.selected.val() & self.endat_channels.val();
             if self.port_page.val() {
                 self.service_selected.d.next = self.selected.val() & self.other_channels.val();
@@ -380,7 +380,7 @@ impl Logic for RegisterBank {
         }
     }
 
-    /// The byte that is read.
+    /// Selects the byte that is read.
     fn answer(&mut self) {
         self.byte.d.next = self.rom_byte.q.val()
             | self.count_byte.q.val()

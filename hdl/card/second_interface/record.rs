@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! result words of the channel --(take)--> held --+
-//! channel, word_at ------------------------------+--> word, 0 if it is another channel's
+//! channel, word_at ------------------------------+--> word, 0 for other channels
 //! ```
 //!
-//! The words are held from the beginning of an answer on: a result that comes in between is in the next one.
+//! The words are held from the beginning of an answer; a later result belongs to the next answer.
 
 use super::RECORD_WORDS;
 use crate::replicate::each;
@@ -20,29 +20,29 @@ pub struct SecondRecord {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// The words of the register block `result`, as they are now.
+    /// The current words of the register block `result`.
     pub live: Vec<Signal<In, Bits<32>>>,
-    /// Strobe: take them.
+    /// Strobe: latch the words.
     pub take: Signal<In, Bit>,
-    /// Channel whose word is wanted.
+    /// Selected channel.
     pub channel: Signal<In, Bits<4>>,
-    /// Which of its words; following the last one that of the check sum.
+    /// Selected word; after the last one the check sum.
     pub word_at: Signal<In, Bits<4>>,
-    /// Word of the channels following this one.
+    /// Word of the channels after this one.
     pub word_in: Signal<In, Bits<32>>,
-    /// The same, or this channel's word.
+    /// `word_in`, or this channel's word.
     pub word: Signal<Out, Bits<32>>,
-    /// Words of the record, as of the beginning of the answer.
+    /// Words of the record, latched at the beginning of the answer.
     held: Vec<Reg<Bits<32>>>,
     /// Number of this channel.
     number: Constant<Bits<4>>,
-    /// Word of this channel that is asked for.
+    /// Selected word of this channel.
     own: Signal<Local, Bits<32>>,
     _words: usize,
 }
 
 impl SecondRecord {
-    /// That of channel `channel`.
+    /// The record of channel `channel`.
     pub fn new(channel: usize) -> Self {
         Self::from_parts(SecondRecordParts {
             live: each(RECORD_WORDS),
@@ -63,7 +63,7 @@ impl Logic for SecondRecord {
                 self.held[i].d.next = self.live[i].val();
             }
         }
-        // The number comes from here: a record in the place of another one is found out.
+        // The record supplies the number itself, so that a swapped record is detected.
         self.own.next = bit_cast::<32, 4>(self.number.val()) << 24;
         match self.word_at.val().index() {
             0 => {

@@ -1,16 +1,16 @@
-//! Frame buffer: takes a set byte by byte, adds the CRC, encodes it with COBS on the way into a block RAM, and gives
-//! whole frames out again.
+//! Frame buffer: takes a set byte by byte, adds the CRC, encodes it with COBS into a block RAM, and outputs
+//! whole frames.
 //!
 //! ```text
 //!                     +--------> CRC-16 -----+
 //! block, byte_at --> set byte ---------------+--> byte --> COBS --> block RAM --> data, ready
 //!                                                  start of frame ^  written ^        ^ read
 //! RAM   .... frame frame | n  b  b  b  n  b ...                                  take-+
-//!            ^ read_at     ^ start_at    ^ code_at: kept for the distance to the next zero
+//! ^ read_at     ^ start_at    ^ code_at: reserved for the distance to the next zero
 //! ```
 //!
-//! The place of the next code byte is kept free and written when the zero is met. A reader sees the frame only when its end is written:
-//! `start_at` is taken forward over all of it at once. A byte takes 16 cycles: one for each bit of the CRC, and time for the rest.
+//! The place of the next code byte is reserved, and written at the next zero. The reader sees a frame only when its end has been written:
+//! `start_at` then moves past the whole frame. A byte takes 16 cycles, eight of them for the bits of the CRC.
 //!
 //! Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
 
@@ -20,7 +20,7 @@ use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Sizes that a buffer can have, in bytes.
+/// Supported sizes of a buffer, in bytes.
 pub const BUFFER_BYTES: [u64; 4] = [1024, 2048, 4096, 8192];
 /// System clock cycles for each byte that is written.
 pub const BYTE_CYCLES: u64 = 16;
@@ -34,22 +34,22 @@ pub const fn set_bytes(channels: usize, additional_data: bool) -> u64 {
     8 + 8 * channels as u64 * (1 + additional_data as u64) + 2
 }
 
-/// Bytes of its frame: COBS takes one, the end another.
+/// Bytes of a frame: COBS adds one, the end another.
 pub const fn frame_bytes(channels: usize, additional_data: bool) -> u64 {
     set_bytes(channels, additional_data) + 2
 }
 
-/// System clock cycles from the close of a set until the next one can be.
+/// System clock cycles from the close of a set until the next one may close.
 pub const fn frame_cycles(channels: usize, additional_data: bool) -> u64 {
     BYTE_CYCLES * (set_bytes(channels, additional_data) + 3) + 2
 }
 
-/// What sets have besides the positions of triggers.
+/// Optional content of sets, in addition to the positions of triggers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SetParts {
     /// Additional data.
     pub additional_data: bool,
-    /// Positions of a running clock, each in a set of its own.
+    /// Positions of a running clock, each in a separate set.
     pub runs: bool,
 }
 
@@ -67,27 +67,27 @@ pub struct FrameBuffer {
     pub idle: Signal<Out, Bit>,
     /// A whole frame fits.
     pub room: Signal<Out, Bit>,
-    /// A single position fits, and another frame after it, so that the sets of triggers keep their place.
+    /// A single position fits, and another frame after it, so that the sets of triggers always fit.
     pub single_room: Vec<Signal<Out, Bit>>,
-    /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
+    /// Requested 8 bytes of the set: 0 = head, n + 1 = channel n.
     pub block: Signal<Out, Bits<4>>,
-    /// Which of them.
+    /// Requested byte of these.
     pub byte_at: Signal<Out, Bits<3>>,
-    /// Of channel n its other 8 bytes: the additional data.
+    /// The other 8 bytes of channel n: the additional data.
     pub second: Vec<Signal<Out, Bit>>,
-    /// The set has but one channel and no additional data; stays put while it is written, as the next one.
+    /// The set has only one channel and no additional data; this and the next input are stable while it is written.
     pub single: Vec<Signal<In, Bit>>,
     /// Place of that channel: 8 times its block.
     pub single_place: Vec<Signal<In, Bits<7>>>,
-    /// That byte, at most 4 cycles later; 0 if there is no such block.
+    /// Requested byte, at most 4 cycles later; 0 for an absent block.
     pub set_byte: Signal<In, Bits<8>>,
-    /// Bytes that wait; a frame counts when it is whole.
+    /// Bytes in the buffer, counting complete frames only.
     pub waiting_bytes: Signal<Out, Bits<16>>,
     /// `data` is the next byte.
     pub ready: Signal<Out, Bit>,
     /// The next byte of the frames.
     pub data: Signal<Out, Bits<8>>,
-    /// Strobe, with `ready` only: the byte is taken.
+    /// Strobe, with `ready` only: the byte is accepted.
     pub take: Signal<In, Bit>,
     /// Buffer of 1024 bytes.
     ram1k: Vec<Memory<8, 10>>,
@@ -99,11 +99,11 @@ pub struct FrameBuffer {
     ram8k: Vec<Memory<8, 13>>,
     /// High while a frame is written.
     writing: Reg<Bit>,
-    /// Which of the 16 cycles of the byte this is.
+    /// Cycle of the byte, 0 to 15.
     cycle_at: Reg<Bits<4>>,
     /// Byte of the set that is written: block in bits 6 to 3, byte in bits 2 to 0.
     at: Reg<Bits<7>>,
-    /// High while the bytes following the last block are written: CRC and end.
+    /// High while the bytes after the last block are written: CRC and end.
     in_tail: Reg<Bit>,
     /// High while the end of the frame is written.
     is_end: Reg<Bit>,
@@ -125,16 +125,16 @@ pub struct FrameBuffer {
     write_at: Reg<Bits<13>>,
     /// Address that is kept free for the next code byte.
     code_at: Reg<Bits<13>>,
-    /// Address following the last whole frame: the reader stops there.
+    /// Address after the last whole frame: the reader stops there.
     start_at: Reg<Bits<13>>,
     /// Address of the next byte to read.
     read_at: Reg<Bits<13>>,
-    /// Bytes that wait to be read.
+    /// Bytes waiting to be read.
     used: Reg<Bits<13>>,
     /// High if a whole frame fits.
     #[start(true)]
     fits: Reg<Bit>,
-    /// High in the cycle after a byte was taken: `used` is not up to date.
+    /// High in the cycle after a byte was accepted: `used` is not up to date.
     took: Reg<Bit>,
     /// High while the additional data of a channel are written.
     in_second: Vec<Reg<Bit>>,
@@ -148,7 +148,7 @@ pub struct FrameBuffer {
     bit_index: Signal<Local, Bits<3>>,
     /// Bit that the CRC feeds back.
     feedback: Signal<Local, Bit>,
-    /// High for one cycle when the write address moves on.
+    /// High for one cycle when the write address advances.
     advance: Signal<Local, Bit>,
     /// High for one cycle when the buffer is written.
     write: Signal<Local, Bit>,
@@ -158,7 +158,7 @@ pub struct FrameBuffer {
     write_byte: Signal<Local, Bits<8>>,
     /// Byte at the read address.
     read_byte: Signal<Local, Bits<8>>,
-    /// Number of the block following the last channel's.
+    /// Number of the block after the last channel's.
     tail_block: Constant<Bits<4>>,
     /// Highest address of the buffer.
     mask: Constant<Bits<13>>,
@@ -166,7 +166,7 @@ pub struct FrameBuffer {
     most_used: Constant<Bits<13>>,
     /// Generator of the CRC, without x^16.
     polynomial: Constant<Bits<16>>,
-    /// 1 if frames can be of more than one length.
+    /// 1 if frames may have more than one length.
     has_other_frames: Constant<Bit>,
     _ram1k: usize,
     _ram2k: usize,
@@ -178,11 +178,11 @@ pub struct FrameBuffer {
 }
 
 impl FrameBuffer {
-    /// A buffer of `bytes` bytes, one of [`BUFFER_BYTES`], for sets of `channels` channels; with additional data, and single positions of a running
-    /// clock among them, if the parts say so.
+    /// A buffer of `bytes` bytes, one of [`BUFFER_BYTES`], for sets of `channels` channels; with additional data and single positions of a running
+    /// clock if `parts` includes them.
     ///
     /// # Panics
-    /// If there is no such buffer.
+    /// If no buffer has this size.
     pub fn new(bytes: u64, channels: usize, parts: SetParts) -> Self {
         let (seconds, singles) = (usize::from(parts.additional_data), usize::from(parts.runs));
         assert!(BUFFER_BYTES.contains(&bytes), "buffer of {bytes} bytes");
@@ -202,7 +202,7 @@ impl FrameBuffer {
             block_ends: each(seconds.max(singles)),
             tail_block: Constant::new((channels as u64 + 1).into()),
             mask: Constant::new((bytes - 1).into()),
-            // One place stays free: full is not empty.
+            // One place stays free, to distinguish full from empty.
             most_used: Constant::new(
                 (bytes - 1 - frame_bytes(channels, parts.additional_data)).into(),
             ),
@@ -222,19 +222,19 @@ impl FrameBuffer {
 #[kernel]
 impl Logic for FrameBuffer {
     fn update(&mut self) {
-        // Each frame begins anew.
+        // Each frame starts from the initial state.
         self.at.reset.next = !self.writing.q.val();
         self.crc.reset.next = !self.writing.q.val();
         self.run.reset.next =
             !self.writing.q.val() | (self.byte_end.q.val() & self.is_zero.q.val());
 
-        // Which byte, and which of its 16 cycles.
+        // Byte, and its cycle 0 to 15.
         self.cycle_at.d.next = self.cycle_at.q.val() + 1;
         self.byte_end.d.next = self.writing.q.val() & (self.cycle_at.q.val() == 14);
         if self.byte_end.q.val() {
             self.at.d.next = self.at.q.val() + 1;
         }
-        // Two blocks of a channel have one number; a single one is followed by the tail.
+        // The two blocks of a channel have one number; the tail follows a single one.
         for i in 0..self._block_ends {
             self.block_ends[i].next =
                 self.byte_end.q.val() & self.at.q.val().get_bits::<3>(0).all();
@@ -286,7 +286,7 @@ impl Logic for FrameBuffer {
         }
         self.is_zero.d.next = !self.byte_held.q.val().any();
 
-        // A bit of the CRC in each of the second eight cycles.
+        // Each of the second eight cycles processes a bit of the CRC.
         self.bit_index.next = !self.cycle_at.q.val().get_bits::<3>(0);
         self.feedback.next = self.crc.q.val().get_bit(15)
             ^ self.byte_held.q.val().get_bit(self.bit_index.val().index());
@@ -297,7 +297,7 @@ impl Logic for FrameBuffer {
             }
         }
 
-        // COBS: a zero becomes the place of the next code byte, and its distance goes to the last one.
+        // COBS: a zero reserves the place of the next code byte, and its distance is written to the last one.
         self.advance.next = self.start.val()
             | (self.byte_end.q.val() & !self.is_end.q.val() & !self.is_past.q.val());
         if self.advance.val() {
@@ -335,7 +335,7 @@ impl Logic for FrameBuffer {
         }
         self.idle.next = !self.writing.q.val();
 
-        // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after that.
+        // The read side. An accepted byte frees its place a cycle later, and the next byte comes in the cycle after that.
         self.took.d.next = self.take.val();
         if self.take.val() {
             self.read_at.d.next = (self.read_at.q.val() + 1) & self.mask.val();

@@ -1,17 +1,17 @@
-//! One channel's part of a sample set: which trigger it took, and its result when the set is closed.
+//! One channel's part of a sample set: whether it took the trigger, and its result when the set is closed.
 //!
 //! ```text
 //! trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
 //!                     ^   |                 ^
-//! result strobe ------+---+-- owes nothing: the set may be closed
+//! result strobe ------+---+-- no result missing: the set may be closed
 //! ```
 //!
-//! Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
-//! be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
+//! Everything is latched in one cycle, so later values cannot enter the set. With separate triggers, a channel may
+//! be slower than the triggers. Its result, which was missing when its set was closed, goes into the channel's empty place in the next set.
 //! <!-- with has_guards -->
 //!
-//! A set waits for the buffer, and has no CRC of the encoder: a position that an upset has changed meanwhile shows by its parity, and goes out as
-//! one that is not fresh, with the cause of an upset.
+//! A waiting set no longer has the CRC of the encoder. If an upset changes the position meanwhile, its parity shows it; the position is then sent as
+//! not fresh, with the cause of an upset.
 //! <!-- end -->
 
 use super::buffer::SetParts;
@@ -28,11 +28,11 @@ pub struct SetChannel {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: the trigger with which a set begins.
+    /// Strobe: the trigger that starts a set.
     pub trigger: Signal<In, Bit>,
-    /// The channel does not take a trigger.
+    /// A trigger would be lost.
     pub busy: Signal<In, Bit>,
-    /// Strobe: a new result is there.
+    /// Strobe: a new result is valid.
     pub result_strobe: Signal<In, Bit>,
     /// Last good position.
     pub position: Signal<In, Bits<48>>,
@@ -40,7 +40,7 @@ pub struct SetChannel {
     pub position_crc: Signal<In, Bits<5>>,
     /// The position came with F2.
     pub position_has_f2: Signal<In, Bit>,
-    /// There is a good position.
+    /// A good position is available.
     pub position_valid: Signal<In, Bit>,
     /// The last result brought the position.
     pub fresh: Signal<In, Bit>,
@@ -48,43 +48,43 @@ pub struct SetChannel {
     pub cause: Signal<In, Bits<5>>,
     /// Raw flags of the last result.
     pub flags: Signal<In, Bits<20>>,
-    /// Strobe: the set is closed, its content is what is there now.
+    /// Strobe: the set is closed; latch the current values.
     pub take: Signal<In, Bit>,
-    /// Strobe, never with `take`: a position of a running clock is taken, for a set of its own.
+    /// Strobe, never with `take`: latch a position of a running clock for a separate set.
     pub take_run: Vec<Signal<In, Bit>>,
-    /// Additional data 1 of the result: 24 bits, came, good, due; where sets have additional data, as the next two.
+    /// Additional data 1 of the result: 24 bits, came, good, due; only if sets have additional data, as the next two ports.
     pub word_1: Vec<Signal<In, Bits<27>>>,
-    /// Additional data 2 of it.
+    /// Additional data 2 of the result.
     pub word_2: Vec<Signal<In, Bits<27>>>,
-    /// Its other 8 bytes are asked for.
+    /// The other 8 bytes are requested.
     pub second: Vec<Signal<In, Bit>>,
-    /// Which 8 bytes of the set are asked for: channel n has number n + 1.
+    /// Requested 8 bytes of the set: channel n has number n + 1.
     pub block: Signal<In, Bits<4>>,
-    /// Which of them: 0 = least significant byte of the position, 6 and 7 = status.
+    /// Requested byte of these: 0 = least significant byte of the position, 6 and 7 = status.
     pub byte_at: Signal<In, Bits<3>>,
-    /// The byte, 1 cycle later; 0 if another channel's is asked for.
+    /// The byte, 1 cycle later; 0 for other channels.
     pub set_byte: Signal<Out, Bits<8>>,
-    /// The channel took the trigger, and its result is not there yet.
+    /// The channel took the trigger, and its result is still missing.
     pub owes: Signal<Out, Bit>,
-    /// The result of the trigger has been replaced by another one (continuous clock).
+    /// A later result has replaced that of the trigger (continuous clock).
     pub replaced: Signal<Out, Bit>,
     /// High if the channel took the last trigger.
     took: Reg<Bit>,
     /// High from a trigger that the channel took until its result.
     waiting: Reg<Bit>,
-    /// High if the last set was closed without this channel's result, until that comes.
+    /// High if the last set was closed without this channel's result, until the result arrives.
     owed: Reg<Bit>,
-    /// High if such a result has come and is in no set yet; cleared when a set takes it.
+    /// High if such a result has arrived and is in no set yet; cleared when a set takes it.
     late: Reg<Bit>,
     /// `late`, with the result of this cycle.
     late_now: Signal<Local, Bit>,
     /// High if the channel took the trigger of the set and has its result.
     is_own: Signal<Local, Bit>,
-    /// High for one cycle when the channel's entry in the set is cleared: it has no result for it.
+    /// High for one cycle when the channel's entry in the set is cleared, because it has no result.
     empties: Signal<Local, Bit>,
-    /// High if the block that is asked for is not this channel's.
+    /// High if another block is requested.
     is_other: Signal<Local, Bit>,
-    /// Position in the set that is being written; 0 if the channel has none for it.
+    /// Position in the set that is being written; 0 if there is none.
     position_taken: Reg<Bits<48>>,
     /// Parity of that position, as it came with its CRC.
     parity_taken: Reg<Bit>,
@@ -94,7 +94,7 @@ pub struct SetChannel {
     took_taken: Reg<Bit>,
     /// High if the result was missing when that set was closed.
     missing_taken: Reg<Bit>,
-    /// Byte of position or status that is asked for; 0 while another block is.
+    /// Requested byte of position or status; 0 for other blocks.
     set_byte_held: Reg<Bits<8>>,
     /// Additional data 1 in the set that is being written.
     info_1: Vec<Reg<Bits<24>>>,
@@ -104,7 +104,7 @@ pub struct SetChannel {
     info_state: Vec<Reg<Bits<8>>>,
     /// State of the additional data of this cycle's result.
     state_now: Vec<Signal<Local, Bits<8>>>,
-    /// Byte of the additional data that is asked for; 0 while another block is.
+    /// Requested byte of the additional data; 0 for other blocks.
     info_byte: Vec<Reg<Bits<8>>>,
     /// High while the result of the trigger is missing.
     open: Signal<Local, Bit>,
@@ -112,15 +112,15 @@ pub struct SetChannel {
     status: Signal<Local, Bits<16>>,
     /// High with the first status byte if the stored position differs from its parity.
     is_upset: Reg<Bit>,
-    /// Parity of the position: from its CRC, or from its bits where it has no CRC.
+    /// Parity of the position: from its CRC, or from its bits if it has no CRC.
     parity: Signal<Local, Bit>,
-    /// Byte that goes out: the stored one, or the cause of an upset in its place.
+    /// Byte to send: the stored one, or the cause of an upset instead.
     shown: Signal<Local, Bits<8>>,
     /// 1 if stored positions are checked against their parity.
     has_guards: Constant<Bit>,
     /// 1 if positions come with a CRC.
     has_crc: Constant<Bit>,
-    /// Mask of the bit of the first status byte that says the channel took the trigger.
+    /// Mask of the bit in the first status byte that marks a channel that took the trigger.
     taken_bit: Constant<Bits<8>>,
     /// Cause of an upset.
     upset_cause: Constant<Bits<8>>,
@@ -133,7 +133,7 @@ pub struct SetChannel {
 }
 
 impl SetChannel {
-    /// The place of channel `channel`, which speaks this protocol, for late results too if `takes_late`, and for what else sets have.
+    /// The place of channel `channel` with this protocol. It accepts late results if `takes_late`, and the content that `parts` selects.
     pub fn new(
         channel: usize,
         protocol: Protocol,
@@ -178,7 +178,7 @@ impl Logic for SetChannel {
         self.owes.next = self.open.val();
         self.replaced.next = self.took.q.val() & !self.waiting.q.val() & self.result_strobe.val();
 
-        // A result that was missing in its set, and has come since. A result after it belongs to another trigger.
+        // A result that was missing in its set and has arrived since. A result after it belongs to another trigger.
         self.late_now.next = self.late.q.val();
         if self.result_strobe.val() {
             self.late_now.next = self.owed.q.val();
@@ -200,7 +200,7 @@ impl Logic for SetChannel {
             | (bit_cast::<16, 1>(self.position_valid.val().into()) << 6)
             | (bit_cast::<16, 1>(self.fresh.val().into()) << 7)
             | (bit_cast::<16, 7>(self.flags.val().get_bits::<7>(12)) << 8);
-        // The polynomial has the factor x + 1: CRC and what it is of, F1 = 0, F2 = 1 and the position, have the same parity.
+        // The polynomial has the factor x + 1, so the CRC has the same parity as the bits it covers: F1 = 0, F2 = 1 and the position.
         self.parity.next = self.position_crc.val().xor() ^ self.position_has_f2.val();
         if !self.has_crc.val() {
             self.parity.next = self.position.val().xor();
@@ -222,7 +222,7 @@ impl Logic for SetChannel {
             }
         }
 
-        // Reported with the first status byte; the bytes before it have been sent.
+        // Reported in the first status byte; the bytes before it have been sent.
         self.is_other.next = self.block.val() != self.number.val();
         self.is_upset.reset.next = self.is_other.val();
         self.is_upset.d.next = self.has_guards.val()
@@ -272,7 +272,7 @@ impl Logic for SetChannel {
             self.info_1[i].d.next = self.info_1[i].q.val();
             self.info_2[i].d.next = self.info_2[i].q.val();
             self.info_state[i].d.next = self.info_state[i].q.val();
-            // Came and good of each word, and due, which is the same for both.
+            // Came and good of each word, and due, which both share.
             self.state_now[i].next = 0.into();
             if self.word_1[i].val().get_bit(24) {
                 self.state_now[i].next = self.state_now[i].val() | 1;
@@ -289,7 +289,7 @@ impl Logic for SetChannel {
             if self.word_1[i].val().get_bit(26) {
                 self.state_now[i].next = self.state_now[i].val() | 16;
             }
-            // They belong to the result, or there is none.
+            // Additional data without a result are cleared.
             self.info_1[i].reset.next = self.empties.val();
             self.info_2[i].reset.next = self.empties.val();
             self.info_state[i].reset.next = self.empties.val();

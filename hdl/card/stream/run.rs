@@ -1,4 +1,4 @@
-//! Positions of a running clock, of one channel: those that no trigger asked for wait for a set of their own.
+//! Positions of a running clock of one channel: positions without a trigger wait for a separate set.
 //!
 //! ```text
 //! trigger taken  _/\______________________________
@@ -6,8 +6,8 @@
 //! waits          _________________/~~\____/~~\____    until the stream takes it
 //! ```
 //!
-//! What is taken is what the channel shows in that cycle, which is one result; the next one takes the place of one that still waits, and that
-//! one is lost.
+//! The stream takes the result that the channel shows in that cycle. A newer result replaces one that still waits, which
+//! is lost.
 
 use super::RUN_SET_TYPE;
 use rtl_design::reg::Reg;
@@ -25,37 +25,37 @@ pub struct RunChannel {
     pub collects: Signal<In, Bit>,
     /// Strobe: the channel takes a trigger.
     pub taken: Signal<In, Bit>,
-    /// Strobe: a new result is there.
+    /// Strobe: a new result is valid.
     pub result_strobe: Signal<In, Bit>,
     /// Number of results.
     pub sequence: Signal<In, Bits<16>>,
     /// Time stamp of the position.
     pub first_fall_timestamp: Signal<In, Bits<32>>,
-    /// The channel whose turn it is.
+    /// Channel whose turn it is.
     pub turn: Signal<In, Bits<3>>,
-    /// It is this one's turn, and a position waits.
+    /// It is this channel's turn, and a position waits.
     pub ready: Signal<Out, Bit>,
-    /// With `ready` the number of its result, else 0.
+    /// Number of the result while `ready`, else 0.
     pub ready_sequence: Signal<Out, Bits<16>>,
-    /// With `ready` its time stamp, else 0.
+    /// Time stamp while `ready`, else 0.
     pub ready_timestamp: Signal<Out, Bits<32>>,
-    /// With `ready` the first byte of its set, else 0.
+    /// First byte of the set while `ready`, else 0.
     pub ready_head: Signal<Out, Bits<8>>,
-    /// With `ready` the place of the channel in a set, else 0.
+    /// Place of the channel in a set while `ready`, else 0.
     pub ready_place: Signal<Out, Bits<7>>,
     /// Strobe: the position of the channel with `ready` is taken.
     pub take: Signal<In, Bit>,
-    /// Strobe: this one is taken.
+    /// Strobe: the position of this channel is taken.
     pub take_run: Signal<Out, Bit>,
-    /// A position has been lost.
+    /// A position was lost.
     pub lost: Signal<Out, Bit>,
-    /// Strobe: it has been counted.
+    /// Strobe: the lost position has been counted.
     pub counted: Signal<In, Bit>,
-    /// High from a trigger that the channel takes until its result: that one is not for a set of its own.
+    /// High from a trigger that the channel takes until its result, which belongs to the trigger's set.
     asked: Reg<Bit>,
     /// High while a position of the running clock waits for its set.
     waits: Reg<Bit>,
-    /// High if a position was replaced before it was taken, until that is counted.
+    /// High if a position was replaced before it was taken, until the loss is counted.
     dropped: Reg<Bit>,
     /// High if a position waits, and it is this channel's turn.
     ready_now: Signal<Local, Bit>,
@@ -68,7 +68,7 @@ pub struct RunChannel {
 }
 
 impl RunChannel {
-    /// That of channel `channel`.
+    /// The running clock of channel `channel`.
     pub fn new(channel: usize) -> Self {
         Self::from_parts(RunChannelParts {
             number: Constant::new((channel as u64).into()),
@@ -81,7 +81,7 @@ impl RunChannel {
 #[kernel]
 impl Logic for RunChannel {
     fn update(&mut self) {
-        // In the cycle of a result what is shown is the new one.
+        // In the cycle of a result the new one is shown.
         self.ready_now.next = self.waits.q.val()
             & !(self.result_strobe.val() & self.asked.q.val())
             & (self.turn.val() == self.number.val());

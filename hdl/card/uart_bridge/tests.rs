@@ -8,7 +8,7 @@ const TIMEOUT: u64 = 100;
 /// Cycles from one microsecond strobe to the next.
 const MICROSECOND: u64 = 10;
 
-/// A bridge with a memory of words behind it and a host in front.
+/// A bridge, with a memory of words as its register bank and a host at its line.
 struct Link {
     uut: UartBridge,
     words: HashMap<u16, u32>,
@@ -19,7 +19,7 @@ struct Link {
     cycle: u64,
     /// Access under way: cycles left.
     busy: u64,
-    /// Accesses until one whose end is lost.
+    /// Accesses until the one whose end is lost.
     left: Option<u64>,
     accesses: u64,
 }
@@ -99,7 +99,7 @@ impl Link {
         bytes.iter().for_each(|&byte| self.send_bits(byte, true));
     }
 
-    /// Sends bytes and returns what comes back until the line has been quiet for a while.
+    /// Sends bytes and returns the answer, received until the line is quiet.
     fn exchange(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.levels.clear();
         self.send(bytes);
@@ -188,7 +188,7 @@ fn a_command_of_no_words_does_nothing() {
     let mut link = Link::new();
     assert!(link.exchange(&[1, 0, 0, 0, 0, 1]).is_empty());
     assert!(link.exchange(&[2, 0, 0, 0, 0, 1]).is_empty());
-    // Nor a read that nobody hears: some words change when they are read.
+    // A read without a listener has no effect either: some words change when they are read.
     assert_eq!(link.accesses, 0);
     link.words.insert(1, 9);
     assert_eq!(link.exchange(&[2, 1, 0, 0, 0, 1]), [0, 0, 0, 9]);
@@ -227,7 +227,7 @@ fn a_framing_error_in_a_command_discards_it_until_the_time_out() {
             link.send_bits(*byte, i != bad);
             link.idle(2 * BIT);
         }
-        // What would be taken for a write if the bridge listened again too early.
+        // A command that would count as a write if the bridge accepted commands too early.
         link.send(&whole);
         link.idle((TIMEOUT + 2) * MICROSECOND);
         assert!(link.writes.is_empty(), "bad byte {bad}");
@@ -237,7 +237,7 @@ fn a_framing_error_in_a_command_discards_it_until_the_time_out() {
     }
 }
 
-/// As after an upset: nothing else would ever bring the link back.
+/// As after an upset: nothing else would restart the link.
 #[test]
 fn an_answer_that_stands_still_is_given_up_after_the_time_out() {
     for lost in 1..=5 {
@@ -252,7 +252,7 @@ fn an_answer_that_stands_still_is_given_up_after_the_time_out() {
     }
 }
 
-/// What the format says about a stream of bytes without pauses: addresses and values written.
+/// Writes (addresses and values) in a stream of bytes without pauses, according to the format.
 fn written(bytes: &[u8]) -> Vec<(u32, u32)> {
     let word = |b: &[u8]| u32::from_be_bytes([b[0], b[1], b[2], b[3]]);
     let (mut at, mut writes) = (0, Vec::new());
@@ -273,7 +273,7 @@ fn written(bytes: &[u8]) -> Vec<(u32, u32)> {
             }
             // A read of no words has no answer, and the next command follows.
             2 | 4 if words == 0 => at += 6,
-            // Other reads are left out: while one is answered, the bridge hears nothing.
+            // The test skips other reads: the bridge ignores its input while it answers.
             2 | 4 => return writes,
             _ => at += 1,
         }
@@ -288,7 +288,7 @@ fn command_bytes() -> impl Strategy<Value = Vec<u8>> {
 }
 
 fn check_writes(bytes: &[u8]) -> Result<(), TestCaseError> {
-    // Stop at the first read: the model leaves the rest open.
+    // Stop at the first read: the model does not cover more.
     let mut link = Link::new();
     for &byte in bytes {
         link.send_bits(byte, true);

@@ -1,4 +1,4 @@
-//! Kernel of the channel: it wires, and chooses.
+//! Kernel of the channel: wiring and multiplexers.
 
 use super::*;
 use rtl_design::kernel;
@@ -28,7 +28,7 @@ impl Logic for Channel {
             command_set = command, width_set = position_bits, filter_set = filter_cycles,
             filter_half_set = filter_half, window_set = start_window_cycles, period = period_cycles
         );
-        // Where a service says width and rate, it may do so at any time.
+        // If a service sets width and rate, it may change them at any time.
         if self.has_requests.val() {
             self.width_set.next = self.frame_width.q.val();
             self.period.next = self.frame_period.q.val();
@@ -58,7 +58,7 @@ impl Logic for Channel {
         }
     }
 
-    /// Which command the next frame has is settled before it begins, and stays until all has been told of it.
+    /// The command of the next frame is fixed before it begins, and stays until the frame has been reported.
     fn choose_command(&mut self) {
         connect!(self <= self; command_now = command_set, payload_bits = width_set);
         if self.has_requests.val() {
@@ -104,7 +104,7 @@ impl Logic for Channel {
         self.shape.command.next = self.command_now.val();
     }
 
-    /// Line, clock, what is sent, and the places of the answer's cells.
+    /// Line, clock, sent bits, and the places of the answer's cells.
     fn run_clock(&mut self) {
         self.filter.pin.next = self.line.data_i.val();
         connect!(self.filter <= self; filter_cycles = filter_set, filter_half = filter_half_set);
@@ -116,7 +116,7 @@ impl Logic for Channel {
         self.clock_gen.period_cycles.next = self.period.val();
 
         self.sender.fall.next = self.clock_gen.fall.val();
-        // Outside of a command nothing is left to send, whatever a register says.
+        // Outside of a command nothing is left to send, whatever the sender's registers hold.
         self.sender.aborts.next = self.transaction.control.aborts.val()
             | (!self.receiver.progress.skipping.val()
                 & !self.transaction.control.start_supplement.val());
@@ -138,7 +138,7 @@ impl Logic for Channel {
         self.delay.start_window_cycles.next = self.window_set.val();
     }
 
-    /// The answer, cell by cell.
+    /// Receives the answer, cell by cell.
     fn receive(&mut self) {
         ControlOut::join(&mut self.transaction.control, &mut self.receiver.control);
         self.receiver.rise.next = self.clock_gen.rise.val();
@@ -154,7 +154,7 @@ impl Logic for Channel {
         connect!(self.receiver <= self.add_info; infos, look);
     }
 
-    /// What begins a frame, and what is known of it.
+    /// Starts a frame with its parameters.
     fn order_frame(&mut self) {
         self.transaction.tick_us.next = self.tick_us.val();
         connect!(self.transaction.next_frame <= self; trigger, calibrate);
@@ -164,12 +164,12 @@ impl Logic for Channel {
         CellsOut::join(&mut self.delay.cells, &mut self.transaction.cells);
         connect!(self.transaction <= self.delay; center, delay_upset = is_upset);
         ProgressOut::join(&mut self.receiver.progress, &mut self.transaction.progress);
-        // In fewer than four cycles additional data, or the next answer of a running clock, would begin before the position is taken.
+        // With fewer than four cycles, additional data or the next answer of a running clock would begin before the position is stored.
         self.wanted_shape.command.next = self.settings_in.command.val();
         if self.has_requests.val() {
             self.wanted_shape.command.next = self.frame_command.q.val();
         }
-        // A trigger takes positions only, with a request or without: another command's answer is none, and may change the encoder.
+        // A trigger sends position commands only, with or without a request. Another command brings no position and may change the encoder.
         self.transaction.next_frame.is_known.next = (self.wanted_shape.is_position.val()
             | (self.wanted_shape.is_known.val()
                 & (self.frame_own.q.val()
@@ -202,7 +202,7 @@ impl Logic for Channel {
         self.transaction.will_rise.next = self.clock_gen.will_rise.val();
     }
 
-    /// The last good position.
+    /// Outputs the last good position.
     fn show_result(&mut self) {
         connect!(self.snapshot <= self; tick_us, timestamp, width_in = payload_bits);
         self.snapshot.delay_cycles.next = self.delay.delay_cycles.val();
@@ -215,9 +215,9 @@ impl Logic for Channel {
         self.snapshot.latched.next = self.receiver.progress.latched.val();
     }
 
-    /// Parameters and additional data.
+    /// Stores parameters and additional data.
     fn take_words(&mut self) {
-        // What comes MSB first stands the other way round in the payload.
+        // Words that arrive MSB first are reversed in the payload.
         self.word.next = 0.into();
         for i in 0..24 {
             self.word.next = self
@@ -252,7 +252,7 @@ impl Logic for Channel {
         self.add_info.flags.next = self.transaction.told.flags_told.val().get_bits::<12>(0);
     }
 
-    /// The line, from registers.
+    /// Registers the outputs of the line.
     fn drive_line(&mut self) {
         self.clk_pin.d.next = self.clock_gen.endat_clk.val();
         self.data_pin.d.next = self.sender.data.val();
@@ -269,7 +269,7 @@ impl Logic for Channel {
         self.line.data_oe.next = self.oe_pin.q.val();
     }
 
-    /// What has become of a frame.
+    /// Reports the outcome of a frame.
     fn tell(&mut self) {
         FrameResultOut::link(&mut self.result, &mut self.snapshot.result);
         connect!(self <= self.delay;
@@ -300,7 +300,7 @@ impl Logic for Channel {
         AdditionalDataOut::link(&mut self.record, &mut self.add_info.record);
     }
 
-    /// The second receiver: what differs from the first is an upset.
+    /// A difference between the two receivers is an upset.
     fn compare(&mut self) {
         for i in 0..self._seconds {
             ControlOut::join(&mut self.transaction.control, &mut self.second[i].control);

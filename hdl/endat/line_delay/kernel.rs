@@ -23,7 +23,7 @@ impl Logic for LineDelay {
         self.since_rise.d.next = self.since_rise.q.val() + 1;
         if self.first_rise.val() {
             self.timing_armed.d.next = true;
-            // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles earlier.
+            // The comparison with the tracked delay and its result are registered: counting starts two cycles earlier.
             self.since_rise.d.next = 3.into();
             if self.acquire.val() {
                 self.since_rise.d.next = 1.into();
@@ -37,7 +37,7 @@ impl Logic for LineDelay {
         if self.has_double.val() {
             self.delay_now.next = self.places.val().get_bits::<11>(1);
         }
-        // The delay stays from frame to frame: a guard looks at it.
+        // The delay is kept from frame to frame, so a guard checks it.
         self.moved.d.next = self.follow_now.q.val() | self.acquired.val();
         for i in 0..self._trackers {
             self.moved.d.next = self.tracker[i].moves.val();
@@ -50,7 +50,7 @@ impl Logic for LineDelay {
                 self.wrong.d.next = true;
             }
         }
-        // One from a register is not measured.
+        // A delay from a register is not measured.
         if self.acquired.val()
             | (self.has_alignment.val() & (self.mode.val() == self.fixed_mode.val()))
         {
@@ -61,9 +61,9 @@ impl Logic for LineDelay {
             self.timing_armed.q.val() & (self.since_rise.q.val() == self.delay_now.val());
     }
 
-    /// Samples and middles of cells, from the first one on.
+    /// Samples and middles of cells, from the first cell on.
     fn place_cells(&mut self) {
-        // The middle of a bit of an odd number of places lies on a place, that of others between two.
+        // The middle of a bit with an odd number of places is on a place; with an even number it is between two.
         self.is_later.next = false;
         for i in 0..self._trackers {
             self.is_later.next = self.tracker[i].past_half.val()
@@ -87,7 +87,7 @@ impl Logic for LineDelay {
             self.half.tick.val() & !self.second_half.q.val() & self.cells_run.q.val();
         self.center_strobe.d.next = (self.half.tick.val() & self.second_half.q.val())
             | (self.first_center.val() & !self.acquired.val());
-        // Phase from the start bit: its edge is the middle, wherever the tracked one is.
+        // Phase from the start bit: its edge is the middle, wherever the tracked middle is.
         self.is_frame.next = self.has_alignment.val() & (self.mode.val() == self.frame_mode.val());
         self.snap.next = self.is_frame.val()
             & self.hunting.val()
@@ -95,21 +95,21 @@ impl Logic for LineDelay {
             & !self.edge_seen.q.val()
             & self.cells_run.q.val()
             & !self.acquire.val();
-        // With two system clock cycles in a bit one cell more begins before a burst is over.
+        // With two system clock cycles in a bit, one more cell begins before a burst ends.
         self.sample_now.next = self.sample_strobe.q.val()
             & !self.snap.val()
             & !(self.has_double.val() & self.afresh.q.val());
         self.center_now.next = self.acquired.val() | self.center_strobe.q.val() | self.snap.val();
     }
 
-    /// Half a cell after the other.
+    /// Times the halves of the cells.
     fn run_halves(&mut self) {
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.second_half.q.val();
         self.half.restart.next =
             !self.cells_run.q.val() | self.control.last_cell.val() | self.snap.val();
         self.half.began.next = self.acquired.val() | self.snap.val();
-        // An odd period has halves of a whole number of half cycles: every other one begins in the middle of a cycle.
+        // An odd period has halves of a whole number of half cycles: every second one begins in the middle of a cycle.
         if self.has_double.val() {
             self.half.second.next = self.second.q.val();
             if self.half.tick.val() & self.cells_run.q.val() {
@@ -137,7 +137,7 @@ impl Logic for LineDelay {
 
     /// The pulse of a cell, and how far its data edge is from the middle.
     fn measure_edge(&mut self) {
-        // Of the edges before an acquired start bit that which launched it is the only one that counts.
+        // Only the edge that launched an acquired start bit counts, not those before it.
         self.pulse_leaves.d.next = self.acquired.val()
             | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
         self.cells.pulse.next = self.pulse_leaves.q.val();
@@ -147,12 +147,12 @@ impl Logic for LineDelay {
                 | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
         }
 
-        // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
-        // is as good as one that is seen with it: the limits of the bit are as far from both.
+        // Distance between the data edge and the middle of its place. An edge first seen one cycle after the middle is as good as one seen with
+        // the middle: both are equally far from the limits of the bit.
         if self.center_now.val() {
             self.center_seen.d.next = true;
         }
-        // An edge behind the sample of the same cycle belongs to the next cell.
+        // An edge after the sample of the same cycle belongs to the next cell.
         self.next_cell.next = self.has_double.val()
             & self.sample_now.val()
             & self.edge_second.val()
@@ -182,7 +182,7 @@ impl Logic for LineDelay {
                 self.edge_outside.d.next = true;
             }
         }
-        // The middle is put upon the edge; how early that is, the half under way tells.
+        // The middle moves onto the edge; the half under way shows how early that is.
         if self.snap.val() & !self.center_seen.q.val() & !self.center_strobe.q.val() {
             self.edge_error.d.next = self.half.left_cycles.val().get_bits::<6>(0);
             if self.half.left_cycles.val() > bit_cast::<10, 6>(self.start_window_cycles.val()) {
@@ -191,7 +191,7 @@ impl Logic for LineDelay {
         }
     }
 
-    /// The tracked delay goes where the start edge was.
+    /// The tracked delay follows the start edge.
     fn follow(&mut self) {
         self.follow_now.d.next = self.follow.val() & self.edge_error.q.val().any();
         self.half.shorten.next = self.shorten.q.val();
@@ -216,7 +216,7 @@ impl Logic for LineDelay {
             self.delay.d.next = 0.into();
         }
 
-        // What the cell's edge says of the phase. In mode `frame` only the start bit does.
+        // Phase from the edge of the cell. In mode `frame` only the start bit sets it.
         self.center_place.next = false;
         self.distance.next = bit_cast::<8, 6>(self.edge_error.q.val());
         if self.has_double.val() {
@@ -230,7 +230,7 @@ impl Logic for LineDelay {
                     + bit_cast::<8, 1>((!self.center_place.val()).into());
             }
         }
-        // While the mean is still being looked for every edge counts.
+        // Every edge counts until the mean is established.
         self.is_open.next = self.has_alignment.val() & self.control.slow.val();
         self.good_edge.next = self.has_alignment.val()
             & self.sample_now.val()
@@ -288,7 +288,7 @@ impl Logic for LineDelay {
         }
     }
 
-    /// Places of the cells, and what was measured.
+    /// Outputs the places of the cells, and the measurement.
     fn tell(&mut self) {
         self.cells.sample.next = self.sample_now.val();
         self.center.next = self.center_now.val();

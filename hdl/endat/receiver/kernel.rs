@@ -22,9 +22,9 @@ impl Logic for Receiver {
         self.tell();
     }
 
-    /// Width of this part of the answer, and the cells behind its CRC.
+    /// Width of this part of the answer, and the cells after its CRC.
     fn choose_width(&mut self) {
-        // Cells behind this CRC: the edge that ends the frame, 30 for each block of additional data.
+        // Cells after this CRC: the edge that ends the frame, 30 for each block of additional data.
         self.cells_after.next = 1.into();
         self.width.next = self.payload_bits.val();
         if self.has_all.val() {
@@ -34,7 +34,7 @@ impl Logic for Receiver {
             if self.infos_left.q.val() == 2 {
                 self.cells_after.next = 61.into();
             }
-            // Parked before that edge.
+            // The clock parks before that edge.
             if self.shape.has_supplement.val() {
                 self.cells_after.next = 0.into();
                 if self.infos_left.q.val() == 1 {
@@ -50,13 +50,13 @@ impl Logic for Receiver {
         }
     }
 
-    /// What a cycle begins with.
+    /// Defaults of a cycle.
     fn begin_cycle(&mut self) {
         self.skip_step.next = self.cells.sample.val();
         if self.control.acquire.val() {
             self.skip_step.next = self.rise.val();
         }
-        // A sample comes two cycles after the one before at least: the state has been registered by then.
+        // Samples are at least two cycles apart: the state has been registered by then.
         self.start_sample.next =
             self.is_hunting.q.val() & self.cells.sample.val() & self.level.val();
         self.covered_bit.next = false;
@@ -73,9 +73,9 @@ impl Logic for Receiver {
         self.again.next = false;
     }
 
-    /// Cells and pulses.
+    /// Counts cells and pulses.
     fn count_cells(&mut self) {
-        // Where a bit has few system clock cycles cells go on until the end has been seen.
+        // With few system clock cycles in a bit, cells continue until the end has been detected.
         self.counts.next = self.cells.sample.val()
             & ((self.field.q.val() != Field::Done) | self.left.q.val().get_bits::<6>(1).any());
         if self.counts.val()
@@ -84,7 +84,7 @@ impl Logic for Receiver {
         {
             self.left.d.next = self.left.q.val() - 1;
         }
-        // Each cell has its pulse. How many cells there are before the start bit is not known: each of them is one pulse more.
+        // Each cell has its pulse. The number of cells before the start bit is unknown: each of them adds a pulse.
         self.one_more.next = self.cells.sample.val() & (self.field.q.val() == Field::Start);
         self.one_less.next = self.cells.pulse.val()
             | (self.control.acquire.val() & self.rise.val() & (self.field.q.val() == Field::Skip));
@@ -103,9 +103,9 @@ impl Logic for Receiver {
         }
     }
 
-    /// The parts of an answer, one after the other.
+    /// Steps through the parts of an answer.
     fn go_on(&mut self) {
-        // Compared in the cycle before: a count stays for two cycles at least.
+        // Compared in the previous cycle: a count is stable for at least two cycles.
         self.payload_ends.d.next = self.left.q.val() == (self.cells_after.val() + 6);
         self.crc_ends.d.next = self.left.q.val() == (self.cells_after.val() + 1);
         match self.field.q.val() {
@@ -141,7 +141,7 @@ impl Logic for Receiver {
             Field::Payload => {
                 if self.cells.sample.val() {
                     self.covered_bit.next = true;
-                    // This bit, five of the CRC, and what comes behind.
+                    // This bit, five of the CRC, and the cells after it.
                     if self.payload_ends.q.val() {
                         self.last_payload.d.next = true;
                         self.field.d.next = Field::Crc;
@@ -212,7 +212,7 @@ impl Logic for Receiver {
                 self.field.d.next = Field::Done;
             }
         }
-        // Not in its arm: the edge of the start bit is known last.
+        // Outside the match arm: the edge of the start bit arrives last in the cycle.
         if self.start_sample.val() & self.cells.edge_in_window.val() {
             self.field.d.next = Field::F1;
             if !self.shape.has_f1.val() & self.has_all.val() {
@@ -221,14 +221,14 @@ impl Logic for Receiver {
         }
     }
 
-    /// Where a bit enters: the smallest of 5, 20, 35 and 50 bits that holds F1, F2 and the position.
+    /// Entry of a bit: the smallest of 5, 20, 35 and 50 bits that holds F1, F2 and the position.
     fn shift(&mut self) {
         self.in5.next = self.width.val() <= 3;
         self.in20.next = (self.width.val() <= 18) & !self.in5.val();
         self.in35.next = (self.width.val() <= 33) & !self.in5.val() & !self.in20.val();
         self.in50.next = !self.in5.val() & !self.in20.val() & !self.in35.val();
         self.bit_in.next = self.bit_held.q.val() & !self.align.q.val();
-        // One cycle later than the sample: the whole word hangs on this enable.
+        // One cycle after the sample: this enable drives the whole word.
         self.shifting.d.next = self.covered_bit.val();
         self.bit_held.d.next = self.level.val();
         self.shift.next = self.shifting.q.val() | self.align.q.val();
@@ -252,7 +252,7 @@ impl Logic for Receiver {
         if self.shift.val() {
             self.word.d.next = self.shifted.val();
         }
-        // What has been published is not needed here any more.
+        // The published word is no longer needed here.
         if self.swaps.val() & self.put.val() {
             self.word.d.next = bit_cast::<50, 48>(self.put_word.val());
         }
@@ -261,7 +261,7 @@ impl Logic for Receiver {
         }
     }
 
-    /// The word is aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
+    /// The word is aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have entered; never after the first shift.
     fn align(&mut self) {
         self.align_first.d.next = self.take_crc.q.val();
         self.aligned_at.next = 5.into();
@@ -285,7 +285,7 @@ impl Logic for Receiver {
         }
     }
 
-    /// The CRC as received, and the guard's look at the stored word.
+    /// The received CRC, and the guard's check of the stored word.
     fn check_crc(&mut self) {
         if self.crc_bit.val() {
             self.crc_bits.d.next = (self.crc_bits.q.val() << 1).replace_bit(0, self.level.val());
@@ -318,7 +318,7 @@ impl Logic for Receiver {
         self.stored_fits.d.next = self.check.is_ok.val() & self.has_guards.val();
     }
 
-    /// A new block: no bits yet. The position stays until it is published; the block's first bit comes a cycle after that.
+    /// Begins a block with no bits. The position stays until it is published; the block's first bit comes a cycle later.
     fn begin_block(&mut self) {
         self.low_separator.d.next = self.separator.val() & !self.level.val() & self.has_all.val();
         self.separator_then.d.next = self.low_separator.q.val();
@@ -331,9 +331,9 @@ impl Logic for Receiver {
         }
     }
 
-    /// A frame, the next answer of a running clock, a supplement: what each begins with.
+    /// Start values for a frame, the next answer of a running clock, and a supplement.
     fn begin_frame(&mut self) {
-        // Cells of the frame besides payload and additional data.
+        // Cells of the frame, excluding payload and additional data.
         self.cells_around.next = self.fixed_cells.val();
         if self.shape.has_f2.val() {
             self.cells_around.next = self.fixed_cells.val() + 1;
@@ -365,7 +365,7 @@ impl Logic for Receiver {
                 bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_around.val();
             self.word.d.next = 0.into();
             self.under_way.d.next = 0.into();
-            // Skipped cells take the counter to 0, where the covered bits start from.
+            // Skipped cells bring the counter to 0, the start value for the covered bits.
             self.covered.d.next = self.skip_from.val();
             self.skip_rounds.d.next = 0.into();
             self.f2_bit.d.next = true;
@@ -380,7 +380,7 @@ impl Logic for Receiver {
                 }
             }
         }
-        // The next answer, without a command before it; an upset of `in_info` does not last as long as the run.
+        // The next answer, without a command before it; clearing `in_info` here ends an upset of it.
         if self.again.val() & self.has_continuous.val() {
             self.left.d.next =
                 bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_from_start.val();
@@ -388,14 +388,14 @@ impl Logic for Receiver {
             self.covered.d.next = 0.into();
             self.in_info.d.next = false;
         }
-        // The first bits from the first HIGH on, until it has gone through all places.
+        // The first bits from the first HIGH on, until that HIGH has passed all places.
         if self.cells.sample.val()
             & (self.field.q.val() != Field::Skip)
             & !self.heard.q.val().get_bit(6)
         {
             self.heard.d.next = (self.heard.q.val() << 1).replace_bit(0, self.level.val());
         }
-        // The line is LOW again behind an echo; an open line stays HIGH.
+        // The line is LOW again after an echo; an open line stays HIGH.
         if self.heard.q.val() == (bit_cast::<7, 6>(self.command.val()) << 1) {
             self.echo.d.next = true;
         }
@@ -414,7 +414,7 @@ impl Logic for Receiver {
         }
     }
 
-    /// How far the answer is.
+    /// Reports the progress of the answer.
     fn tell_progress(&mut self) {
         self.progress.skipping.next =
             (self.field.q.val() == Field::Skip) | (self.field.q.val() == Field::Supplement);
@@ -431,7 +431,7 @@ impl Logic for Receiver {
         self.progress.last_sent.next =
             (self.to_send.q.val() == 1) & self.one_less.val() & !self.one_more.val();
         self.progress.none_under_way.next = self.to_send.q.val() == self.left.q.val();
-        // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
+        // Evaluated at least a cycle after the last count: this keeps three comparisons out of the path of the cause.
         self.used.d.next = self.progress.all_sent.val()
             & (self.left.q.val() == 1)
             & ((self.under_way.q.val() == 1) | !self.has_guards.val());
@@ -458,12 +458,12 @@ impl Logic for Receiver {
         self.progress.gap_good.next = self.good_gap.q.val() & self.has_continuous.val();
         self.progress.gap_low.next = self.low_gap.q.val() & self.has_continuous.val();
         self.progress.gap_high.next = self.high_gap.q.val() & self.has_continuous.val();
-        // Of an encoder that is still at the answer before nothing has been taken.
+        // No answer has been received from an encoder that is still sending the previous one.
         self.progress.latched.next =
             self.again.val() & !self.level.val() & self.has_continuous.val();
     }
 
-    /// What it has brought.
+    /// Outputs the received answer.
     fn tell(&mut self) {
         self.verdict.is_echo.next = self.echo.q.val() & self.has_diagnosis.val();
         self.payload.next = self.word.q.val().get_bits::<48>(0);

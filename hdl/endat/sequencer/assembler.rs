@@ -10,26 +10,26 @@
 //! assert_eq!(a.finish().unwrap()[0], 0xb0003);
 //! ```
 //!
-//! A label is a name or a handle ([`Assembler::label`]), and may be used before it is placed. Faults are noted where they are
-//! made and told by [`Assembler::finish`].
+//! A label is a name or a handle ([`Assembler::label`]), and may be used before it is placed. [`Assembler::finish`] returns the first
+//! fault.
 
 use super::{PORTS, PROGRAM_WORDS};
 use std::collections::BTreeMap;
 
-/// Why a program cannot be made.
+/// Reasons why a program is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AssemblerError {
-    /// A label that is used and never placed.
+    /// A label is used and never placed.
     #[error(
         "label = {name}: is used at word {word} and never placed; place it with place({name})"
     )]
     UnknownLabel {
         /// The label.
         name: String,
-        /// Where it is used first.
+        /// Word of its first use.
         word: usize,
     },
-    /// A label that is placed twice.
+    /// A label is placed twice.
     #[error(
         "label = {name}: is placed at word {first} and again at word {second}; rename one of them"
     )]
@@ -41,15 +41,15 @@ pub enum AssemblerError {
         /// Its second place.
         second: usize,
     },
-    /// A port that is not there.
+    /// A port number is out of range.
     #[error("port = {port}: is used at word {word}, ports go from 0 to {}; use one of these", PORTS - 1)]
     UnknownPort {
         /// Number of the port.
         port: u8,
-        /// Where it is used.
+        /// Word of its use.
         word: usize,
     },
-    /// More words than the program memory has.
+    /// The program has more words than the program memory.
     #[error("program = {words} words: the limit is {PROGRAM_WORDS}; shorten it")]
     TooLong {
         /// Words of the program.
@@ -57,16 +57,16 @@ pub enum AssemblerError {
     },
 }
 
-/// A place in a program, known by a name or a handle.
+/// A place in a program, with a name or a handle.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Label {
-    /// By its name.
+    /// A name.
     Name(String),
-    /// By the number of a handle; see [`Assembler::label`].
+    /// The number of a handle; see [`Assembler::label`].
     Handle(Handle),
 }
 
-/// A label without a name, of one [`Assembler`].
+/// A label without a name; valid for one [`Assembler`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Handle(usize);
 
@@ -91,16 +91,16 @@ impl std::fmt::Display for Label {
     }
 }
 
-/// `imm[8]`: the address is counted from X.
+/// `imm[8]`: the address is relative to X.
 const INDEXED: u32 = 1 << 8;
-/// `imm[9]`: the carry takes part.
+/// `imm[9]`: includes the carry.
 const WITH_CARRY: u32 = 1 << 9;
 
-/// A program in the making. Instructions follow each other in the order of the calls.
+/// A program under construction. Instructions are appended in the order of the calls.
 #[derive(Clone, Debug, Default)]
 pub struct Assembler {
     words: Vec<u32>,
-    /// Words whose lowest bits are the place of a label.
+    /// Words whose lowest bits are the address of a label.
     uses: Vec<(usize, Label)>,
     places: BTreeMap<Label, usize>,
     handles: usize,
@@ -144,7 +144,7 @@ impl Assembler {
         handle
     }
 
-    /// The label stands for the next instruction.
+    /// Places the label at the next instruction.
     pub fn place(&mut self, label: impl Into<Label>) -> &mut Self {
         let (label, second) = (label.into(), self.words.len());
         if let Some(first) = self.places.get(&label).copied() {
@@ -160,20 +160,20 @@ impl Assembler {
         self
     }
 
-    /// Words so far.
+    /// Number of words so far.
     pub fn len(&self) -> usize {
         self.words.len()
     }
 
-    /// Whether there is no instruction yet.
+    /// True if the program has no instruction yet.
     pub fn is_empty(&self) -> bool {
         self.words.is_empty()
     }
 
-    /// The words of the program, all labels resolved.
+    /// The words of the program, with all labels resolved.
     ///
     /// # Errors
-    /// The first fault that was made.
+    /// The first fault.
     pub fn finish(&self) -> Result<Vec<u32>, AssemblerError> {
         if let Some(fault) = &self.fault {
             return Err(fault.clone());
@@ -191,7 +191,7 @@ impl Assembler {
                     word: *word,
                 });
             };
-            // A label behind the last word is the first one, as it is for the machine.
+            // A label after the last word is address 0, as for the machine.
             words[*word] |= (place % PROGRAM_WORDS) as u32;
         }
         Ok(words)
@@ -257,36 +257,36 @@ impl Assembler {
         andi(imm: u16) = 9, imm.into();
         /// A = A xor `imm`.
         xori(imm: u16) = 10, imm.into();
-        /// To where the last call came from, one word on.
+        /// Return: jump to the word after the last call.
         ret() = 15, 0;
         /// X = low byte of A.
         tax() = 15, 1;
-        /// A = where the last call came from, one word on.
+        /// A = address of the word after the last call.
         link() = 15, 2;
-        /// To the word that A names.
+        /// Jump to the address in A.
         jmpa() = 15, 3;
         /// A = A / 2; C is the bit shifted out.
         shr() = 15, 4;
-        /// The bytes of A change places.
+        /// Exchange the bytes of A.
         swap() = 15, 5;
     }
 
     jumps! {
-        /// A = word of a label, for [`Assembler::jmpa`].
+        /// A = address of a label, for [`Assembler::jmpa`].
         ldi_label = 0, 0;
-        /// To a label.
+        /// Jump to a label.
         jmp = 13, 0;
-        /// To a label if A is 0.
+        /// Jump to a label if A is 0.
         jz = 13, 1 << 13;
-        /// To a label if A is not 0.
+        /// Jump to a label if A is not 0.
         jnz = 13, 2 << 13;
-        /// To a label if C is 1.
+        /// Jump to a label if C is 1.
         jc = 13, 3 << 13;
-        /// To a label if C is 0.
+        /// Jump to a label if C is 0.
         jnc = 13, 4 << 13;
-        /// To a label if bit 15 of A is 1.
+        /// Jump to a label if bit 15 of A is 1.
         jneg = 13, 5 << 13;
-        /// To a label; [`Assembler::ret`] comes back to the next word. There is one link only: who calls on keeps it with
+        /// Call a label; [`Assembler::ret`] returns to the next word. A subroutine that calls another one must save the link with
         /// [`Assembler::link`].
         call = 14, 0;
     }
@@ -296,7 +296,7 @@ impl Assembler {
 mod tests {
     use super::*;
 
-    /// The example at the top of this file: a documentation test would read the whole crate for it.
+    /// The example at the top of this file; a documentation test would compile the whole crate for it.
     #[test]
     fn example_of_the_documentation_assembles() {
         let example = include_str!("assembler.rs").split("```").nth(1).unwrap();

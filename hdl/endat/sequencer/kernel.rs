@@ -34,7 +34,7 @@ impl Logic for Sequencer {
         if self.cycle.q.val() == Cycle::Operand {
             self.cycle.d.next = Cycle::Execute;
         }
-        // The counter moves at the end of the third cycle only, so the word stands throughout the second and third.
+        // The counter moves only at the end of the third cycle, so the word is stable throughout the second and third.
         self.program.read_address.next = self.counter.q.val();
         if self.is_execute.val() & self.is_shared.val() {
             self.program.read_address.next = self.other_counter.q.val();
@@ -47,7 +47,7 @@ impl Logic for Sequencer {
         self.port_second.next = self.is_second.q.val();
     }
 
-    /// Second cycle: what is computed here counts in the third.
+    /// Second cycle: computes the inputs of the third.
     fn decode(&mut self) {
         self.offset.next = 0.into();
         if self.immediate.val().get_bit(8) {
@@ -56,7 +56,7 @@ impl Logic for Sequencer {
         self.operand_address.next =
             self.program.read_data.val().get_bits::<8>(0) + self.offset.val();
         self.address.d.next = self.operand_address.val();
-        // Among the instructions that take `value`, two bits tell these four apart.
+        // Two bits distinguish these four among the instructions that use `value`.
         match self.choice.val().index() {
             1 => self.logic.next = self.accumulator.q.val() & self.immediate.val(),
             2 => self.logic.next = self.accumulator.q.val() ^ self.immediate.val(),
@@ -133,7 +133,7 @@ impl Logic for Sequencer {
         }
     }
 
-    /// Where the program goes on.
+    /// Selects the next address.
     fn choose_way(&mut self) {
         match self.program.read_data.val().get_bits::<3>(13).index() {
             0 => self.is_taken.next = true,
@@ -170,16 +170,16 @@ impl Logic for Sequencer {
         }
     }
 
-    /// What the sum is made of.
+    /// Selects the operands of the sum.
     fn prepare(&mut self) {
-        // What does not load A adds 0 to it. The reset of the flip-flops makes a 0, which costs no look-up tables.
+        // An instruction that does not load A adds 0 to it. The reset input of the flip-flops makes this 0 without look-up tables.
         self.base.d.next = self.accumulator.q.val();
         self.base.reset.next = self.reset.val() | (self.loads.val() & !self.adds.val());
         self.value.reset.next = self.reset.val() | !self.loads.val() | self.takes_port.val();
         self.port_read.next = self.takes_port.val() & (self.cycle.q.val() == Cycle::Operand);
     }
 
-    /// Third cycle: the sum. Below its lowest bit stands a place where the carry comes in.
+    /// Third cycle: the sum, with an extra place for the carry below its lowest bit.
     fn execute(&mut self) {
         self.operand.next = self.value.q.val();
         if self.takes_memory.q.val() {
@@ -239,7 +239,7 @@ impl Logic for Sequencer {
         self.port_write.next = self.is_execute.val() & self.writes_port.q.val();
     }
 
-    /// The RAM is read for the machine in its second cycle and written for it in its third, otherwise for the host.
+    /// Reads the RAM for the machine in its second cycle, otherwise for the host.
     fn read_memory(&mut self) {
         self.host_place.next = bit_cast::<8, 7>(self.host_address.val())
             | (bit_cast::<8, 1>(self.host_second.val().into()) << 7);
@@ -263,7 +263,7 @@ impl Logic for Sequencer {
         self.host_word.next = self.word.q.val();
     }
 
-    /// The RAM is written for the machine in its third cycle, otherwise for the host.
+    /// Writes the RAM for the machine in its third cycle, otherwise for the host.
     fn write_memory(&mut self) {
         self.write_word.next = self.host_place.val();
         self.write_half.next = self.host_half.val();

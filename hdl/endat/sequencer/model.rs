@@ -1,8 +1,8 @@
-//! The machine in plain Rust, instruction by instruction, from its definition: what the block is held against.
+//! Reference model of the machine in plain Rust, instruction by instruction; tests compare the block with it.
 
 use super::{PROGRAM_WORDS, RAM_WORDS};
 
-/// The state that a program sees.
+/// State visible to a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Model {
     pub program: Vec<u32>,
@@ -48,7 +48,7 @@ impl Model {
         self.instruction() >> bit & 1 == 1
     }
 
-    /// The RAM word that the instruction names, if it does.
+    /// RAM word of the instruction, if it has one.
     pub fn address(&self) -> usize {
         let x = if self.flag(8) { self.x } else { 0 };
         usize::from((self.imm() as u8).wrapping_add(x))
@@ -58,7 +58,7 @@ impl Model {
         self.imm() as u8 % 32
     }
 
-    /// Does one instruction, with the word `m` from RAM and `input` at the port; the port that is written, and what.
+    /// Executes one instruction, with the word `m` from RAM and `input` at the port. Returns the written port and its value.
     pub fn step(&mut self, m: u16, input: u16) -> Option<(u8, u16)> {
         let next = (self.counter + 1) % PROGRAM_WORDS as u16;
         let target = self.imm() % PROGRAM_WORDS as u16;

@@ -4,11 +4,11 @@ use super::*;
 use crate::testing::{settle, tick};
 use proptest::prelude::*;
 
-/// The block beside its models, one for each run of the program, cycle by cycle, and a host that reads and writes.
+/// The block and its models, one for each run of the program, compared cycle by cycle, with a host that reads and writes.
 struct Rig {
     uut: Sequencer,
     models: Vec<Model>,
-    /// Whose turn it is.
+    /// Active run.
     running: usize,
     /// 0 fetch, 1 operand, 2 execute.
     cycle: u32,
@@ -21,16 +21,16 @@ struct Rig {
     writing: Option<(usize, usize, u16)>,
     /// Host word being read, and its values in each cycle from the strobe on.
     reading: Option<(usize, Vec<u32>)>,
-    /// What the first run has written, and the second one.
+    /// Outputs of the first and the second run.
     outputs: [Vec<(u8, u16)>; 2],
 }
 
-/// Words of RAM as the host sees them; those of the second run follow those of the first.
+/// Words of RAM for the host; those of the second run follow those of the first.
 const HOST_WORDS: usize = RAM_WORDS / 2;
 /// Op of IN.
 const IN: u32 = 11;
 
-/// What a port answers in a cycle.
+/// Value of a port in a cycle.
 fn port_value(port: u8, now: u64) -> u16 {
     (now as u16).wrapping_mul(0x9e37) ^ u16::from(port).wrapping_mul(0x1111)
 }
@@ -156,7 +156,7 @@ impl Rig {
         self.compare()
     }
 
-    /// The registers of the run whose turn it is, and of the other one.
+    /// Compares the registers of the active run and of the waiting one.
     fn compare(&self) -> Result<(), String> {
         let u = &self.uut;
         let of = |m: &Model| (m.a, m.x, m.carry, m.link, m.counter);
@@ -189,7 +189,7 @@ impl Rig {
         Ok(())
     }
 
-    /// What the host has read, three cycles after its strobe: one of the values that the word had from then on.
+    /// Checks the word that the host reads: three cycles after its strobe it is one of the values since then.
     fn check_host_word(&mut self) -> Result<(), String> {
         let got = self.uut.host_word.val().to_u64() as u32;
         match &self.reading {
@@ -232,7 +232,7 @@ fn outputs(assembler: &Assembler, count: usize) -> Vec<(u8, u16)> {
     panic!("only {:x?}", rig.outputs[0]);
 }
 
-/// What a program leaves in A.
+/// A at the end of a program.
 fn result(make: impl Fn(&mut Assembler) -> &mut Assembler) -> u16 {
     let mut a = Assembler::new();
     make(&mut a);
@@ -240,11 +240,11 @@ fn result(make: impl Fn(&mut Assembler) -> &mut Assembler) -> u16 {
     outputs(&a, 1)[0].1
 }
 
-/// What a program leaves in C.
+/// C at the end of a program.
 fn carry(make: impl Fn(&mut Assembler) -> &mut Assembler) -> u16 {
     result(|a| {
         make(a);
-        // C comes in alone.
+        // Loads C alone.
         a.ldi(0).st(250).adc(250)
     })
 }
@@ -339,7 +339,7 @@ fn conditions_decide_jumps() {
         for value in [0, 1, 0x100, 0x7fff, 0x8000] {
             for c in [0, 1] {
                 let mut a = Assembler::new();
-                // The condition is on what stands in A right before.
+                // The condition tests A as loaded directly before.
                 a.ldi(c).shr().ldi(1 ^ value & 1).ldi(value);
                 jump(&mut a, "yes");
                 a.out(1).place("yes").out(2);
@@ -371,7 +371,7 @@ fn a_port_is_read_in_the_second_cycle() {
     );
 }
 
-/// 5, 6, 7 and the unknown ones of 15; then what no program filled.
+/// 5, 6, 7, the unknown codes of 15, and the memory after the program.
 #[test]
 fn what_is_no_instruction_starts_again() {
     let special = (6..16).map(|n| 0xf0000 | n);
@@ -459,7 +459,7 @@ fn the_host_writes_halves_and_reads_words() {
 
 #[test]
 fn two_runs_take_turns_and_share_nothing_but_the_program() {
-    // Each counts in its own RAM, from what its port says at first.
+    // Each run counts in its RAM, from the first value of its port.
     let mut a = Assembler::new();
     a.inp(5).st(9).place("again").ld(9).addi(1).st(9).out(2);
     a.jmp("again");
@@ -488,7 +488,7 @@ fn two_runs_take_turns_and_share_nothing_but_the_program() {
     assert_eq!(rig.fetch(HOST_WORDS + 20), 0x34_0000);
 }
 
-/// The cycles that the documentation tells.
+/// Checks the cycle counts in the documentation.
 #[test]
 fn an_instruction_takes_three_cycles_alone_and_four_shared() {
     for (runs, cycles) in [(1, INSTRUCTION_CYCLES), (2, SHARED_CYCLES)] {
@@ -514,7 +514,7 @@ impl Random {
         (z ^ (z >> 31)) % limit
     }
 
-    /// Any word, but rarely one that starts again; often a RAM word that others use too.
+    /// Any word, but rarely one that restarts; often a RAM word that others use too.
     fn instruction(&mut self) -> u32 {
         let mut op = self.below(16) as u32;
         if (5..8).contains(&op) && self.below(8) != 0 {

@@ -1,4 +1,4 @@
-//! A channel's side of the service: what the program reads of it, and what it writes.
+//! A channel's side of the service: the ports of the program.
 //!
 //! ```text
 //! ends of frames, additional data, answers --> io_in --> Service
@@ -12,7 +12,7 @@ use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// A channel's part of the service.
+/// The service's part for a channel.
 #[derive(LogicBlock, Block)]
 pub struct ServiceChannel {
     /// System clock.
@@ -25,11 +25,11 @@ pub struct ServiceChannel {
     /// Record of the additional data that follow each position.
     #[bundle]
     pub record: AdditionalDataIn,
-    /// The frame under way has the request.
+    /// The frame under way carries the request.
     pub request_runs: Signal<In, Bit>,
     /// DATA is HIGH, and no frame is on the wire.
     pub line_high: Signal<In, Bit>,
-    /// Strobe: a trigger has been lost.
+    /// Strobe: a trigger is lost.
     pub displaced: Signal<In, Bit>,
     /// Number of results.
     pub sequence: Signal<In, Bits<16>>,
@@ -51,7 +51,7 @@ pub struct ServiceChannel {
     pub command_now: Signal<Out, Bits<6>>,
     /// Position width for the channel.
     pub position_bits_now: Signal<Out, Bits<6>>,
-    /// What the service asks of its channel.
+    /// Requests of the service to its channel.
     #[bundle]
     pub orders: ServiceOrdersOut,
     /// Strobe: the next frame measures the line delay.
@@ -60,25 +60,25 @@ pub struct ServiceChannel {
     pub alarm: Signal<Out, Bit>,
     /// Port that the program reads or writes.
     pub io_address: Signal<In, Bits<5>>,
-    /// Strobe: it is read.
+    /// Strobe: the program reads the port.
     pub io_read: Signal<In, Bit>,
-    /// In the next cycle what the port had to say, otherwise 0.
+    /// In the next cycle the value of the port; otherwise 0.
     pub io_in: Signal<Out, Bits<16>>,
-    /// What is written.
+    /// Value to write.
     pub io_out: Signal<In, Bits<16>>,
-    /// Strobe: it is written to the port.
+    /// Strobe: the program writes the port.
     pub io_write: Signal<In, Bit>,
-    /// Word of RAM that the host writes; stays put from one strobe to the next, 8 cycles at least.
+    /// Word of RAM that the host writes; stable from one strobe to the next, at least 8 cycles.
     pub host_address: Signal<In, Bits<7>>,
-    /// Strobe: the host writes one half of it.
+    /// Strobe: the host writes one half of the word.
     pub host_write: Signal<In, Bit>,
-    /// The half: 1 = high. Written last, the low one acts.
+    /// Half to write: 1 = high. If written last, the low half acts.
     pub host_half: Signal<In, Bit>,
     /// Set when a frame ends; cleared by the program.
     has_event: Reg<Bit>,
-    /// Set when a frame ends before the program has seen the one before; cleared by the program.
+    /// Set when a frame ends before the program has read the previous one; cleared by the program.
     missed: Reg<Bit>,
-    /// High if the last frame had the request.
+    /// High if the last frame carried the request.
     event_request: Reg<Bit>,
     /// Primary cause of the last frame.
     event_cause: Reg<Bits<5>>,
@@ -86,9 +86,9 @@ pub struct ServiceChannel {
     request_written: Reg<Bit>,
     /// Set when the host writes the control word; cleared by the program.
     control_written: Reg<Bit>,
-    /// The host has written a word: set with either half, cleared by the program.
+    /// Set when the host writes either half of a word; cleared by the program.
     written: Reg<Bit>,
-    /// Triggers that have been lost, modulo 65536.
+    /// Lost triggers, modulo 65536.
     lost_count: Reg<Bits<16>>,
     /// Mode command of the request.
     out_command: Reg<Bits<6>>,
@@ -96,13 +96,13 @@ pub struct ServiceChannel {
     out_address: Reg<Bits<8>>,
     /// Data of the request.
     out_data: Reg<Bits<16>>,
-    /// Strobes: bit 0 the request rides, 1 it has its own frame, 2 it is cancelled, 3 the delay is measured.
+    /// Strobes: bit 0 sends the request with a trigger, 1 in a separate frame, 2 cancels it, 3 measures the delay.
     out_go: Reg<Bits<4>>,
-    // Until the program has begun, no trigger may get in its way.
+    // Triggers must not interfere until the program has started.
     /// Bit 0 holds frames off, 1 keeps the clock low, 2 is the channel's alarm.
     #[given]
     out_control: Reg<Bits<3>>,
-    /// Faults that a test forces upon frames.
+    /// Faults forced by a test.
     out_force: Reg<Bits<5>>,
     /// Position width found, 0 if none; bit 6: frames use mode command 000111.
     out_found: Reg<Bits<7>>,
@@ -112,23 +112,23 @@ pub struct ServiceChannel {
     out_watchdog: Reg<Bits<12>>,
     /// Shortest recovery time, in system clock cycles; 0 = not checked.
     out_recovery: Reg<Bits<13>>,
-    /// Bit 0: the clock goes on after each position; bit 1: it stops after an error.
+    /// Bit 0: the clock continues after each position; bit 1: it stops after an error.
     out_continuous: Reg<Bits<2>>,
     /// Status of the channel for the program.
     status: Signal<Local, Bits<16>>,
-    /// Answer to a request that arrived MSB first.
+    /// Answer to a request, if it arrived MSB first.
     turned: Signal<Local, Bits<24>>,
     /// One bit for each port: the program reads it.
     chosen: Signal<Local, Bits<32>>,
     /// Word of each port in the cycle after the program reads it, otherwise 0.
     seen: Vec<Reg<Bits<16>>>,
     _words: usize,
-    /// 1 if the encoder gets the short recovery time.
+    /// 1 if the encoder is set to the short recovery time.
     wants_short: Constant<Bit>,
 }
 
 impl ServiceChannel {
-    /// The side of a channel whose encoder gets the short recovery time if `wants_short`, and is initialised after reset if
+    /// A channel part that sets the encoder to the short recovery time if `wants_short`, and initialises it after reset if
     /// `initialise`.
     pub fn new(wants_short: bool, initialise: bool) -> Self {
         Self::from_parts(ServiceChannelParts {
@@ -147,7 +147,7 @@ impl Logic for ServiceChannel {
             self.lost_count.d.next = self.lost_count.q.val() + 1;
         }
 
-        // What the program reads.
+        // Ports read by the program.
         self.status.next = bit_cast::<16, 1>(self.has_event.q.val().into())
             | (bit_cast::<16, 1>(self.event_request.q.val().into()) << 1)
             | (bit_cast::<16, 1>(self.request_written.q.val().into()) << 2)
@@ -161,7 +161,7 @@ impl Logic for ServiceChannel {
             | (bit_cast::<16, 1>(self.request_runs.val().into()) << 11)
             | (bit_cast::<16, 2>(self.record.info_came.val()) << 12)
             | (bit_cast::<16, 1>(self.written.q.val().into()) << 14);
-        // What comes MSB first stands the other way round in the answer.
+        // Words that arrive MSB first are reversed in the answer.
         self.turned.next = 0.into();
         for i in 0..24 {
             self.turned.next = self
@@ -190,7 +190,7 @@ impl Logic for ServiceChannel {
             | (bit_cast::<16, 1>(self.wants_short.val().into()) << 7);
         self.seen[17].d.next = bit_cast::<16, 11>(self.period_cycles.val());
         self.seen[18].d.next = bit_cast::<16, 11>(self.delay_cycles.val());
-        // A reset by deselection takes no logic, and an OR less than a choice.
+        // Deselected registers are reset, which takes no logic, so an OR replaces a multiplexer.
         self.chosen.next = 0.into();
         if self.io_read.val() {
             self.chosen.next = bit_cast::<32, 1>(1.into()) << self.io_address.val();
@@ -219,7 +219,7 @@ impl Logic for ServiceChannel {
             | self.seen[17].q.val()
             | self.seen[18].q.val();
 
-        // What it writes.
+        // Ports written by the program.
         self.out_go.d.next = 0.into();
         if self.io_write.val() {
             match self.io_address.val().index() {

@@ -1,12 +1,12 @@
-//! Ports of the service's program. The words of its RAM are in the register table: [`endat_regs::service`].
+//! Ports of the service's program. The register table has the words of its RAM: [`endat_regs::service`].
 
 /// Ports that the program reads.
 pub mod input {
     /// Bits of [`STATUS`].
     pub mod status {
-        /// A frame has ended and not been looked at.
+        /// A frame has ended, and the program has not handled it.
         pub const EVENT: u16 = 1 << 0;
-        /// It had the request.
+        /// That frame carried the request.
         pub const IS_REQUEST: u16 = 1 << 1;
         /// The host has written the request word.
         pub const MAILBOX: u16 = 1 << 2;
@@ -14,7 +14,7 @@ pub mod input {
         pub const CONTROL: u16 = 1 << 3;
         /// DATA is HIGH, and no frame is on the wire.
         pub const LINE_HIGH: u16 = 1 << 4;
-        /// The CRC of the answer to the last request with a frame of its own is right.
+        /// The CRC of the answer to the last separate request frame is right.
         pub const REPLY_GOOD: u16 = 1 << 5;
         /// The last frame brought additional data 1 with a right CRC.
         pub const INFO_1: u16 = 1 << 6;
@@ -22,20 +22,20 @@ pub mod input {
         pub const INFO_2: u16 = 1 << 7;
         /// The encoder sends additional data 1.
         pub const INFO_1_ACTIVE: u16 = 1 << 8;
-        /// A frame ended before the last one had been looked at.
+        /// A frame ended before the program handled the previous one.
         pub const MISSED: u16 = 1 << 9;
         /// The last frame brought a good position.
         pub const FRESH: u16 = 1 << 10;
-        /// The frame under way has the request.
+        /// The frame under way carries the request.
         pub const REQUEST_RUNS: u16 = 1 << 11;
         /// The last frame brought additional data 1, with a right CRC or a wrong one.
         pub const INFO_1_CAME: u16 = 1 << 12;
         /// The last frame brought additional data 2, with a right CRC or a wrong one.
         pub const INFO_2_CAME: u16 = 1 << 13;
-        /// The host has written a word, or half of one.
+        /// The host has written at least half of a word.
         pub const WRITTEN: u16 = 1 << 14;
     }
-    /// What there is to do.
+    /// Events and state.
     pub const STATUS: u8 = 0;
     /// Primary cause of the frame that ended.
     pub const CAUSE: u8 = 1;
@@ -63,9 +63,9 @@ pub mod input {
     pub const PERIOD: u8 = 17;
     /// Tracked line delay, in system clock cycles.
     pub const DELAY: u8 = 18;
-    /// Number of these.
+    /// Number of the ports above.
     pub const WORDS: u8 = DELAY + 1;
-    /// Microseconds, wrapping. From 24 on ports are the same for all channels.
+    /// Microseconds, wrapping. Ports from 24 on are equal for all channels.
     pub const TIME_US: u8 = 30;
     /// Milliseconds, wrapping.
     pub const TIME_MS: u8 = 31;
@@ -75,11 +75,11 @@ pub mod input {
 pub mod output {
     /// Bits of [`GO`].
     pub mod go {
-        /// The request rides on the next triggered frame.
+        /// The next triggered frame carries the request.
         pub const RIDE: u16 = 1 << 0;
-        /// The request gets a frame of its own.
+        /// The request gets a separate frame.
         pub const OWN: u16 = 1 << 1;
-        /// A request that has not begun is forgotten.
+        /// Cancels a request that has not begun.
         pub const CANCEL: u16 = 1 << 2;
         /// The next frame measures the line delay, at the calibration clock.
         pub const CALIBRATE: u16 = 1 << 3;
@@ -95,13 +95,13 @@ pub mod output {
     }
     /// Bits of [`ACKNOWLEDGE`].
     pub mod acknowledge {
-        /// The frame's end has been looked at.
+        /// The end of the frame has been handled.
         pub const EVENT: u16 = 1 << 0;
-        /// The request has been taken.
+        /// The request has been read.
         pub const MAILBOX: u16 = 1 << 1;
-        /// The control word has been taken.
+        /// The control word has been read.
         pub const CONTROL: u16 = 1 << 2;
-        /// Words that the host has written are about to be guarded.
+        /// The program is about to guard the words that the host has written.
         pub const WRITTEN: u16 = 1 << 3;
     }
     /// Clears bits of the status.
@@ -118,9 +118,9 @@ pub mod output {
     pub const CONTROL: u8 = 5;
     /// Forced errors: F1, F2, CRC.
     pub const FORCE: u8 = 6;
-    /// Found in the encoder: position bits (5..0, 0 = nothing found), it knows EnDat 2.1 only (6).
+    /// Properties of the encoder: position bits (5..0, 0 = unknown), supports EnDat 2.1 only (6).
     pub const FOUND: u8 = 7;
-    /// EnDat clock period that the encoder takes, in system clock cycles; 0 = as configured.
+    /// EnDat clock period for the encoder, in system clock cycles; 0 = as configured.
     pub const PERIOD: u8 = 8;
     /// Watchdog, in microseconds.
     pub const WATCHDOG: u8 = 9;
@@ -128,19 +128,19 @@ pub mod output {
     pub const RECOVERY_MIN: u8 = 10;
     /// Continuous clock: as [`super::word::CONTINUOUS`].
     pub const CONTINUOUS: u8 = 11;
-    /// Whatever is written: the program goes its round, or waits for something that has an end.
+    /// Any value: the program is running, or waits for something with a time limit.
     pub const ALIVE: u8 = 12;
 }
 
 pub use endat_regs::service::*;
 
-/// Words for EnDat 2.2.
+/// Memory area for EnDat 2.2.
 pub const AREA_ENDAT22: u8 = 0xBD;
 /// Address of the recovery time in the operating status.
 pub const RECOVERY_ADDRESS: u8 = 3;
-/// Bits of that word which are the recovery time; what the others mean is the encoder's.
+/// Recovery time bits of that word; the encoder defines the others.
 pub const RECOVERY_MASK: u16 = 3;
-/// Long recovery time, as written there (TI).
+/// Long recovery time (TI).
 pub const RECOVERY_LONG: u16 = 2;
-/// Short recovery time, as written there (TI).
+/// Short recovery time (TI).
 pub const RECOVERY_SHORT: u16 = 1;

@@ -1,4 +1,4 @@
-//! The service's program: what it does, step by step.
+//! The service's program, step by step.
 //!
 //! ```text
 //! start -> [power-up, initialisation] -> loop: end of a frame?   count it, keep its additional data, prepare the next selection
@@ -7,7 +7,7 @@
 //!                                              line HIGH for long, then LOW?  power-up, initialise
 //! ```
 //!
-//! Subroutines that call others keep their return address in a word of RAM. Conditions: after `sub` C means less, after `addi(minus(k))`
+//! Subroutines that call others save their return address in a word of RAM. Conditions: after `sub`, C means less; after `addi(minus(k))`,
 //! C means at least k.
 
 mod error_test;
@@ -30,51 +30,51 @@ use crate::endat::sequencer::{assembler::Assembler, RAM_WORDS, SHARED_CYCLES};
 use crate::endat::timing;
 use guard::{guard, guarded, settings};
 
-/// Times of a service, and what it does by itself.
+/// Times and automatic actions of a service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ServiceTimes {
-    /// Initialises the encoder after reset and after it has been plugged in.
+    /// Initialise the encoder after reset and after it is plugged in.
     pub initialise: bool,
-    /// The channel has the watchdog and the shortest recovery time.
+    /// The channel has the watchdog and the check of the shortest recovery time.
     pub diagnosis: bool,
     /// The channel has the continuous clock.
     pub continuous: bool,
-    /// MRS codes that the list of additional data has after reset; 0 = none.
+    /// MRS codes in the list of additional data after reset; 0 = none.
     pub infos: [u8; LIST],
-    /// One forced error each so many milliseconds, until the host says otherwise; 0 = no program for it.
+    /// Initial period of the forced errors, in milliseconds; 0 leaves out their program.
     pub error_test_ms: u16,
     /// The channels have a second receiver.
     pub second_receiver: bool,
-    /// Clock HIGH after power-up, before the pulse.
+    /// Clock HIGH after power-up, before the pulse, in ms.
     pub power_up_ms: u16,
-    /// Clock HIGH after the pulse.
+    /// Clock HIGH after the pulse, in ms.
     pub after_pulse_ms: u16,
-    /// Wait after a reset.
+    /// Wait after a reset, in ms.
     pub reset_ms: u16,
-    /// Wait after a word has been written or an area selected.
+    /// Wait after writing a word or selecting an area, in ms.
     pub write_ms: u16,
-    /// Wait after other commands with a parameter.
+    /// Wait after other commands with a parameter, in ms.
     pub gap_ms: u16,
-    /// Longest Busy.
+    /// Longest Busy, in ms.
     pub busy_ms: u16,
-    /// A request with a frame of its own that has not ended by then has failed.
+    /// Timeout of a separate request frame, in ms.
     pub request_ms: u16,
-    /// Longest wait of a request for a trigger, until the host says otherwise.
+    /// Initial timeout of a request that waits for a trigger, in ms.
     pub wait_ms: u16,
-    /// DATA must be HIGH for so long to be taken for an open line.
+    /// Time that DATA must be HIGH to count as an open line, in ms.
     pub unplugged_ms: u16,
-    /// A program that has not shown for so long that it is alive begins anew, 63 at most.
+    /// Time without a write to the alive port after which a run restarts, in ms; at most 63.
     pub stuck_ms: u16,
-    /// The longest wait, whoever asks for it, and one: a mask. A jump astray into a wait costs no more.
+    /// Upper limit of any wait, in ms, as a mask. It also limits a wait entered by a jump astray.
     pub wait_mask: u16,
-    /// After a reset RAM may hold anything, and is cleared.
+    /// Clear RAM, which may hold any content after a reset.
     pub clears_ram: bool,
     /// System clock in kHz.
     pub system_khz: u32,
 }
 
 impl ServiceTimes {
-    /// The protocol's times at a system clock of `system_hz`.
+    /// The protocol's times, for a system clock of `system_hz`.
     pub const fn at(system_hz: u64) -> Self {
         Self {
             initialise: true,
@@ -92,7 +92,7 @@ impl ServiceTimes {
             request_ms: 200,
             wait_ms: timing::REQUEST_WAIT_MS,
             unplugged_ms: 5,
-            // Longest it computes: a division of 2047 rounds, 48 cycles each, 13 ms at the slowest clock.
+            // Longest computation: a division of 2047 rounds, 48 cycles each, 13 ms at the slowest clock.
             stuck_ms: 32,
             wait_mask: WAIT_MASK,
             clears_ram: false,
@@ -115,7 +115,7 @@ const fn high(word: u8) -> u8 {
     2 * word + 1
 }
 
-/// What takes `k` away in an addition.
+/// Addend that subtracts `k`.
 const fn minus(k: u16) -> u16 {
     0u16.wrapping_sub(k)
 }
@@ -125,19 +125,19 @@ fn set(a: &mut Assembler, address: u8, value: u16) {
     a.ldi(value).st(address);
 }
 
-/// Adds bits to a RAM word, whether they are there or not.
+/// Sets bits of a RAM word.
 fn set_bits(a: &mut Assembler, address: u8, bits: u16) {
     a.ld(address).andi(!bits).addi(bits).st(address);
 }
 
-/// Stores A in one of [`own::KEPT`]. The main loop begins anew where an upset, or a jump astray, has changed it alone.
+/// Stores A in one of [`own::KEPT`], with its complement. If an upset, or a jump astray, changes only one of the two, the main loop restarts the program.
 fn keep(a: &mut Assembler, address: u8) {
     let inverse = own::KEPT.iter().find(|(kept, _)| *kept == address);
     let (_, inverse) = inverse.expect("a word that is kept");
     a.st(address).xori(u16::MAX).st(*inverse).xori(u16::MAX);
 }
 
-/// Adds bits to one of [`own::KEPT`], whether they are there or not.
+/// Sets bits of one of [`own::KEPT`].
 fn keep_bits(a: &mut Assembler, address: u8, bits: u16) {
     a.ld(address).andi(!bits).addi(bits);
     keep(a, address);
@@ -146,7 +146,7 @@ fn keep_bits(a: &mut Assembler, address: u8, bits: u16) {
 /// The program.
 ///
 /// # Panics
-/// If it is longer than the sequencer takes: a fault of this file that every test shows.
+/// If the program exceeds the program memory: a bug in this file that every test detects.
 pub fn program(times: &ServiceTimes) -> Vec<u32> {
     let mut a = Assembler::new();
     start(&mut a, times);
@@ -170,22 +170,22 @@ pub fn program(times: &ServiceTimes) -> Vec<u32> {
     }
 }
 
-/// Cycles after which a service that clears its RAM has done so: seven instructions to a word.
+/// Cycles that clearing the RAM takes at most: seven instructions for each word.
 pub const CLEAR_CYCLES: u64 = (7 * RAM_WORDS as u64 + 50) * SHARED_CYCLES;
 
 /// Clears RAM, once after power-up.
 fn clear_ram(a: &mut Assembler) {
     let (cold, more, half, warm) = (a.label(), a.label(), a.label(), a.label());
     let [(first, one), (second, other)] = own::CLEARED;
-    // Who comes to no decision, as a simulator with unknown values, clears.
+    // If the comparison is undecided, as in a simulator with unknown values, clear.
     a.ld(first).xori(one).jz(half);
     a.place(cold).ldi(u16::from(u8::MAX));
-    // The first word counts, and is the last.
+    // Word 0 is the counter, and is cleared last.
     a.place(more).st(0).tax().ldi(0).st_x(0);
     a.ld(0).addi(minus(1)).jnz(more).st(0);
     set(a, first, one);
     set(a, second, other);
-    // 0 at power-up. Who has come astray to here has cleared the count of starts.
+    // Clear the count of starts: TIME_MS is 0 at power-up. A jump astray to this place clears it, too.
     a.inp(input::TIME_MS).st(high(word::STATE));
     a.jmp(warm);
     a.place(half).ld(second).xori(other).jnz(cold);
@@ -197,7 +197,7 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         clear_ram(a);
     }
     a.place("start");
-    // Each with a zero of its own: who comes astray into their middle spoils one of them.
+    // A separate zero for each: a jump astray into the middle corrupts only one of them.
     for word in [
         own::ZERO,
         own::MAILBOX,
@@ -241,7 +241,7 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         a.call("recovery_min");
         guard(a, own::SET_RECOVERY);
     }
-    // At the end: who comes astray into the middle sets what a start sets, and the host has to know.
+    // At the end: a jump astray into the middle sets the start values, and the host must notice.
     a.ld(high(word::STATE)).addi(1).st(high(word::STATE));
     if times.initialise {
         a.call("power_up");
@@ -257,7 +257,7 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     let (no_clear, no_control) = (a.label(), a.label());
     a.out(output::ALIVE);
     a.call("look");
-    // One request at a time: the next one waits at the door, and so does the control word.
+    // One request at a time: the next one waits in the mailbox, and so does the control word.
     a.ld(own::MAILBOX).jz(free);
     a.xori(requests::mailbox::OWN).jz(nobody);
     a.inp(input::STATUS)
@@ -274,14 +274,14 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(request_state::NO_TRIGGER).call("give_up");
     a.jmp(levels);
     a.place(free);
-    // What is under way and waits for no frame of a trigger is not worked on here: an upset has led the program out of it.
+    // A request under way that waits for no trigger is not handled here: an upset has led the program out of its handler.
     a.ld(low(word::REQUEST_STATE)).andi(request_state::BUSY);
     a.jz(idle);
     a.place(nobody);
     a.ldi(request_state::FRAME).call("finish");
     a.place(idle);
     a.inp(input::STATUS).andi(status::CONTROL).jz(no_control);
-    // Before the next request, which a cancel is not meant for.
+    // Before the next request, which a cancel does not concern.
     a.place(acts);
     a.ldi(acknowledge::CONTROL).out(output::ACKNOWLEDGE);
     a.ld(low(word::CONTROL)).andi(control::CLEAR).jz(no_clear);
@@ -304,15 +304,15 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(acknowledge::WRITTEN).out(output::ACKNOWLEDGE);
     settings(times).for_each(|setting| guard(a, setting));
     a.place(same);
-    // A word and its complement are -1 together: this comes round in the time of a frame of the continuous clock.
+    // A word plus its complement is -1. All are checked within the time of a frame of the continuous clock.
     a.ldi(guarded(times).count() as u16);
     for (word, inverse) in guarded(times) {
         a.add(word).add(inverse);
     }
     a.jnz("changed");
-    // Nothing else is left on here.
+    // All other levels are cleared here.
     a.ld(own::LEVELS).andi(!level::ALARM).jnz("start");
-    // Levels are written again and again: an upset of one does not last.
+    // Levels are rewritten continuously, so an upset of one is corrected.
     a.ld(low(word::FORCE)).out(output::FORCE);
     a.ld(own::LEVELS).out(output::CONTROL);
     a.ld(own::FOUND).out(output::FOUND);
@@ -328,13 +328,13 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     plug(a, times);
     a.jmp("main");
 
-    // By the host, in this moment, or by an upset: then everything begins anew, and the host sees that it has to write its settings again.
+    // A guarded word has changed. WRITTEN set: the host wrote it. Otherwise an upset changed it: restart, and the count of starts makes the host write its settings again.
     a.place("changed");
     a.inp(input::STATUS).andi(status::WRITTEN).jz("start");
     a.jmp("main");
 }
 
-/// Another m: the history begins again.
+/// Another m: restart the history.
 fn window(a: &mut Assembler) {
     let (same, more) = (a.label(), a.label());
     a.ld(high(word::THRESHOLD)).sub(own::WINDOW).jz(same);
@@ -345,12 +345,12 @@ fn window(a: &mut Assembler) {
     a.ld(own::COUNT).addi(minus(1)).st(own::COUNT).jz(same);
     a.ld(own::LEAVING).add(own::LEAVING).st(own::LEAVING);
     a.jnz(more);
-    // More than 16 are 16.
+    // Limit m to 16.
     set(a, own::LEAVING, 1 << 15);
     a.place(same);
 }
 
-/// An open line shows HIGH; when it is LOW again, there is an encoder to initialise.
+/// An open line is HIGH; when it is LOW again, initialise the encoder.
 fn plug(a: &mut Assembler, times: &ServiceTimes) {
     let done = a.label();
     a.inp(input::STATUS).andi(status::LINE_HIGH).jnz(done);
@@ -365,7 +365,7 @@ fn plug(a: &mut Assembler, times: &ServiceTimes) {
 }
 
 fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
-    // Handles the end of a frame, or notices an open line; for every loop. To be called where nothing but `event` may need
+    // Handles the end of a frame, or detects an open line; for every loop. Call it only where nothing but `event` needs
     // the return address.
     let (is_high, again, seen) = (a.label(), a.label(), a.label());
     a.place("look");
@@ -386,7 +386,7 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
     a.place(seen).ret();
 
     if times.diagnosis {
-        // The shortest recovery time of the range that is wanted. Whoever calls this guards it: a jump astray into it does not.
+        // Lower end of the selected recovery time range. The callers guard this; a jump astray into it is not guarded.
         let long = a.label();
         let cycles =
             |ns| timing::recovery_min_cycles(ns, u64::from(times.system_khz) * 1_000) as u16;
@@ -399,7 +399,7 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
         a.ret();
     }
 
-    // Waits for A milliseconds at least; whatever A is, not for minutes.
+    // Waits for at least A milliseconds; the mask limits every value of A.
     a.place("wait")
         .addi(1)
         .andi(times.wait_mask)
@@ -411,14 +411,14 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
     a.call("look");
     a.inp(input::TIME_MS).sub(own::WAIT_FROM).sub(own::WAIT_MS);
     a.jnc(over);
-    // The word itself may have been upset.
+    // The word may have been upset, too.
     a.inp(input::TIME_MS).sub(own::WAIT_FROM);
     a.addi(minus(times.wait_mask)).jnc(again);
     a.place(over).ld(own::FROM_WAIT).jmpa();
 
-    // All counters and what is latched.
+    // Clears counters and latched state.
     a.place("clear");
-    // No loop: a jump astray into one would clear all of RAM.
+    // Unrolled: a jump astray into a loop would clear all of RAM.
     a.ldi(0);
     for counter in 0..=COUNTER_BAD_INFOS {
         let word = word::COUNTERS + counter;
@@ -444,7 +444,7 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
     keep(a, own::LEVELS);
     a.out(output::CONTROL).ret();
 
-    // Two to the position's width.
+    // 2 to the power of the position's width.
     a.place("modulus");
     let (configured, more) = (a.label(), a.label());
     a.ld(own::FOUND).andi(63).jnz(configured);

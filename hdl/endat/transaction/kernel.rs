@@ -30,12 +30,12 @@ impl Logic for Transaction {
         self.watch_health();
     }
 
-    /// What is wanted, and what a cycle begins with.
+    /// Frame requests, and defaults of a cycle.
     fn ask(&mut self) {
         self.own.next = self.next_frame.is_own.val() & self.has_all.val();
         self.triggered.next =
             self.next_frame.trigger.val() & !(self.next_frame.hold_off.val() & self.has_all.val());
-        // The position that a measuring frame has made possible.
+        // The position that follows a measuring frame.
         self.owed.next = self.once_more.q.val()
             & self.owing.q.val()
             & !(self.next_frame.hold_off.val() & self.has_all.val());
@@ -59,7 +59,7 @@ impl Logic for Transaction {
         self.answer_taken.next = false;
         self.announce.next = false;
         self.probed.next = false;
-        // The timer of a wait that was longer than a frame goes on for a cycle after it.
+        // The timer of a wait longer than a frame still counts for one cycle after it.
         self.endless.next = (self.timer.q.val() & self.frame_us.val()).any()
             & !(self.cleared.q.val() & self.has_all.val());
         self.watched.next = false;
@@ -67,7 +67,7 @@ impl Logic for Transaction {
         self.found.next = 0.into();
     }
 
-    /// What is known of a line that is HIGH at rest, and of one without a start bit.
+    /// Flags for a line that is HIGH at rest, and for a missing start bit.
     fn explain_line(&mut self) {
         self.not_low.next = self.data_not_low.val();
         self.no_start.next = self.no_start_bit.val();
@@ -82,10 +82,10 @@ impl Logic for Transaction {
         }
     }
 
-    /// The order of a frame.
+    /// Sequence of a frame.
     fn go_on(&mut self) {
         self.running.next = false;
-        // A frame that has vanished: a register was upset.
+        // A frame without an end: a register was upset.
         self.vanished.next = self.has_guards.val()
             & ((self.owing.q.val() & !self.once_more.q.val()) | self.under_way.q.val());
 
@@ -105,24 +105,24 @@ impl Logic for Transaction {
         }
     }
 
-    /// What ends a frame, before its time or at it.
+    /// Ends a frame, early or normally.
     fn end_frame(&mut self) {
         if self.has_diagnosis.val() & self.health.expired.val() & self.watched.val() {
             self.found.next = self.found.val() | self.too_long.val();
             self.give_up.next = true;
         }
-        // What is given up has that as its one result; the verdict looks at that for `proof`.
+        // An aborted frame has the abort as its only result; the verdict uses this for `proof`.
         if self.give_up.val() | self.verdict.gave_up.val() {
             self.announce.next = false;
         }
-        // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
+        // Continuous clock ends with the clock HIGH for longer than tm, in any state of the encoder.
         self.leave.next = self.going.val()
             & self.progress.gap_good.val()
             & (!self.next_frame.continuous.val()
                 | self.next_frame.line_wanted.val()
                 | !self.known.val()
                 | (self.next_frame.stop_at_error.val() & self.verdict.is_bad.val()));
-        // Later, for the answer that comes with it is published first.
+        // Delayed, because the answer of this cycle is published first.
         self.left.d.next = self.leave.val();
         if self.left.q.val() {
             self.normal_end.next = true;
@@ -138,15 +138,15 @@ impl Logic for Transaction {
             self.answered.d.next = false;
             self.under_way.d.next = self.going.val() & !self.leave.val();
         }
-        // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
+        // The abort takes effect one cycle later, which keeps the decision out of the longest paths.
         if self.verdict.gave_up.val() {
             self.phase.d.next = Phase::Abort;
             self.timer_clear.next = true;
             self.accept.next = false;
             self.refuse.next = false;
-            // A trigger just behind the one that was refused is lost, not forgotten.
+            // A trigger directly after the refused one counts as lost.
             self.idle.next = false;
-            // DATA LOW behind a frame of another length does not end it once more.
+            // DATA LOW after a frame of another length does not end the frame again.
             self.normal_end.next = false;
             self.answered.d.next = false;
             self.is_calibrated.d.next = false;
@@ -155,7 +155,7 @@ impl Logic for Transaction {
         }
     }
 
-    /// Time-outs, each counted from the beginning of its span.
+    /// Time-outs, each counted from the start of its span.
     fn run_timer(&mut self) {
         self.was_hunting.d.next = self.progress.hunting.val();
         self.was_center.d.next = self.center.val();
@@ -164,7 +164,7 @@ impl Logic for Transaction {
             self.timer.d.next = self.timer.q.val() + 1;
         }
         self.timer_limit.d.next = self.limit.val();
-        // Not less: a timer that was upset past its limit ends, too. While `cleared` is HIGH the timer is still that of the span before.
+        // Greater or equal: a timer upset past its limit ends, too. While `cleared` is HIGH the timer still has the value of the previous span.
         self.timer_hit.d.next =
             (self.timer.q.val() >= self.timer_limit.q.val()) & !self.cleared.q.val();
         self.cleared.d.next = self.timer_clear.val() | self.rise_back.val();
@@ -186,7 +186,7 @@ impl Logic for Transaction {
         }
     }
 
-    /// Where the recovery time begins.
+    /// Finds the start of the recovery time.
     fn find_last_edge(&mut self) {
         self.in_tail.next = self.phase.q.val() == Phase::Tail;
         self.in_recovery.next = self.phase.q.val() == Phase::Recovery;
@@ -205,17 +205,17 @@ impl Logic for Transaction {
         self.last_edge.in_supplement.next = self.in_supplement.q.val();
     }
 
-    /// The verdict.
+    /// Inputs of the verdict.
     fn judge(&mut self) {
         connect!(self.verdict <= self; found, answer_taken, prove = proof);
         self.verdict.is_measuring.next = self.measuring.q.val();
         self.verdict.settings_upset.next = self.settings_upset.val() | self.delay_upset.val();
         self.verdict.give_up.next = self.give_up.val();
-        // Of a frame that measured nothing has been published.
+        // A measuring frame has published nothing.
         self.verdict.is_late.next =
             (self.answered.q.val() & !self.verdict.once_more.val()) | self.found_late.val();
         connect!(self.verdict <= self; refuse, announce, normal_end, is_own = own);
-        // A run that is being left has measured no recovery time.
+        // While a run stops, no recovery time is measured.
         self.verdict.is_going.next =
             self.going.val() | (self.leaving.q.val() & self.has_continuous.val());
         AnswerCheckIn::link(&mut self.check, &mut self.verdict.check);
@@ -223,9 +223,9 @@ impl Logic for Transaction {
         self.verdict.recovery_min_cycles.next = self.limits.recovery_min_cycles.val();
     }
 
-    /// Whether the propagation delay is known.
+    /// Tracks whether the propagation delay is known.
     fn know_delay(&mut self) {
-        // The mean over several frames, if it is taken; the last of them makes the delay known.
+        // With alignment, the mean over several frames; the last of them makes the delay known.
         if self.verdict.is_received.val()
             & self.measuring.q.val()
             & !(self.has_alignment.val() & self.is_fixed.val())
@@ -236,13 +236,13 @@ impl Logic for Transaction {
                 self.is_calibrated.d.next = self.passes.q.val().all();
             }
         }
-        // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
+        // A delay that is wrong by whole periods is not detected at the start edge. A continuous clock finds each start bit anew, and ends as configured.
         if self.verdict.is_doubtful.val() & !self.going.val() {
             self.is_calibrated.d.next = false;
         }
     }
 
-    /// Triggers that are lost, and the result that is owed.
+    /// Lost triggers, and the owed result.
     fn owe(&mut self) {
         self.lost.next = self.next_frame.trigger.val()
             & !self.going.val()
@@ -255,7 +255,7 @@ impl Logic for Transaction {
         if self.verdict.publishes.val() | self.refuse.val() {
             self.owing.d.next = false;
         }
-        // What else becomes of that frame is the trigger's result, not something that comes behind it.
+        // Any other outcome of that frame is the trigger's result, not a late fault.
         if self.verdict.once_more.val() {
             self.once_more.d.next = true;
             self.answered.d.next = false;
@@ -272,13 +272,13 @@ impl Logic for Transaction {
         }
     }
 
-    /// What a frame begins with.
+    /// Start values of a frame.
     fn begin_frame(&mut self) {
         if self.accept.val() {
             self.is_slow.d.next = !self.known.val();
             self.late.d.next = false;
         }
-        // A cycle later: the first clock edge has not come by then.
+        // One cycle later is early enough: the first clock edge has not come yet.
         if self.starting.q.val() {
             self.measuring.d.next = self.is_slow.q.val();
             self.under_way.d.next = true;
@@ -290,7 +290,7 @@ impl Logic for Transaction {
         }
     }
 
-    /// A clock that goes on after the answer, and how it is left.
+    /// A clock that continues after the answer, and its end.
     fn run_on(&mut self) {
         self.going.next = false;
         for i in 0..self._runs {
@@ -315,13 +315,13 @@ impl Logic for Transaction {
         }
     }
 
-    /// Whether the delay has to be measured again.
+    /// Conditions for a new measurement of the delay.
     fn measure_again(&mut self) {
         self.high_at_tick.d.next = self.high_at_tick.q.val() & self.level.val();
         if self.tick_us.val() {
             self.high_at_tick.d.next = self.level.val();
         }
-        // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
+        // A fixed delay is not measured: tracking must measure first.
         self.afresh.next =
             self.next_frame.calibrate.val() | self.plugged.q.val() | self.delay_upset.val();
         if self.afresh.val() | (self.has_alignment.val() & self.is_fixed.val()) {
@@ -332,14 +332,14 @@ impl Logic for Transaction {
         }
     }
 
-    /// The clock: when it runs, stands LOW, and ends.
+    /// The clock: runs, is held LOW, ends.
     fn hold_clock(&mut self) {
         self.was_running.d.next = self.running.val();
         self.cell_control.run.next = self.was_running.q.val();
         self.starting.d.next = self.accept.val();
         self.control.start.next = self.starting.q.val();
         self.control.aborts.next = self.verdict.gave_up.val();
-        // Taking the start bit ends its cell; `started` comes when the comparison knows that.
+        // Receiving the start bit ends its cell; `started` is set by the time of the comparison.
         self.sent.next =
             self.last_edge.all_sent.val() & self.progress.started.val() & !self.going.val();
         self.parking.next = false;
@@ -358,11 +358,11 @@ impl Logic for Transaction {
                 self.last_edge.stalled.val() | (self.phase.q.val() == Phase::Park);
         }
         self.stopping.d.next = !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
-        // The high phase of the last pulse may last two cycles only.
+        // The high phase of the last pulse may be only two cycles long.
         self.stop.next = self.stopping.q.val() | self.sent.val();
     }
 
-    /// What is told.
+    /// Outputs.
     fn tell(&mut self) {
         self.control.acquire.next = self.acquiring.q.val();
         self.cell_control.slow.next = self.is_slow.q.val();
@@ -373,7 +373,7 @@ impl Logic for Transaction {
         self.control.start_supplement.next = self.supplement_starts.q.val();
         self.over.next = self.verdict.over.val();
         self.begun.next = self.accept.val() | self.refuse.val();
-        // A reset may have come in the middle of a frame. After power-up nobody has begun one.
+        // A reset may have come in the middle of a frame. After power-up no frame has begun.
         if self.reset.val() {
             self.phase.d.next = Phase::Abort;
         }

@@ -1,14 +1,14 @@
-//! Last edge: when the last rising edge of CLOCK has come back, from which the recovery time counts.
+//! Last edge: detects when the last rising edge of CLOCK has come back; the recovery time counts from it.
 //!
 //! ```text
-//! center     /\__/\__/\__/\______    between two samples; the edge is in the middle behind the last bit
+//! center     /\__/\__/\__/\______    between two samples; the edge is in the middle after the last bit
 //! last_bit   ___/\_______________    the last bit is sampled
-//! in_tail    _________/~~~\______    double edge: the answer has been worked upon, some cells later
-//! comes      ____________/\______    here the timer begins
-//! ago_cycles             2           with what has passed
+//! in_tail    _________/~~~\______    double edge: the answer has been processed, some cells later
+//! comes      ____________/\______    the timer begins here
+//! ago_cycles             2           with the cycles that have passed
 //! ```
 //!
-//! Never are more pulses on the cable than the answer needs: where all are sent before it has begun, CLOCK is held LOW, and the edge comes a cell
+//! The cable never carries more pulses than the answer needs. If all are sent before the answer begins, CLOCK is held LOW, and the edge comes a cell
 //! later.
 
 use crate::endat::features::Features;
@@ -27,41 +27,41 @@ pub struct LastEdge {
     pub start: Signal<In, Bit>,
     /// All pulses of the answer are sent, or on their way to the pin.
     pub no_pulse_left: Signal<In, Bit>,
-    /// One is left.
+    /// One pulse of the answer is left.
     pub one_pulse_left: Signal<In, Bit>,
-    /// Strobe: the last one is counted in this cycle.
+    /// Strobe: the last pulse is counted in this cycle.
     pub last_sent: Signal<In, Bit>,
     /// Strobe: CLOCK rises in the next cycle.
     pub will_rise: Signal<In, Bit>,
-    /// None that was sent is still to come back.
+    /// All sent pulses have come back.
     pub none_under_way: Signal<In, Bit>,
-    /// The start bit has come.
+    /// The start bit has been received.
     pub started: Signal<In, Bit>,
-    /// The clock goes on.
+    /// The clock continues after this answer.
     pub going: Signal<In, Bit>,
-    /// Pulses are sent.
+    /// Pulses are being sent.
     pub running: Signal<In, Bit>,
     /// Strobe: a cycle ago was the middle between two samples.
     pub was_center: Signal<In, Bit>,
-    /// Strobe: the last bit before the tail has been sampled; looked at with double edge only.
+    /// Strobe: the last bit before the tail has been sampled; used with double edge only.
     pub last_bit: Signal<In, Bit>,
-    /// The answer has been worked upon, the cell behind it goes on.
+    /// The answer has been processed; the cell after it continues.
     pub in_tail: Signal<In, Bit>,
-    /// That cell is over.
+    /// The cell after the answer is over.
     pub in_recovery: Signal<In, Bit>,
-    /// The HIGH behind the answer has been sampled.
+    /// The HIGH after the answer has been sampled.
     pub tail_sampled: Signal<In, Bit>,
-    /// A supplement ends the frame: nothing is late there.
+    /// A supplement ends the frame, so no edge is late.
     pub in_supplement: Signal<In, Bit>,
-    /// Strobe: the edge has come back, `ago_cycles` ago; again where it came later than expected.
+    /// Strobe: the edge has come back, `ago_cycles` ago; repeated if it came later than expected.
     pub comes: Signal<Out, Bit>,
-    /// How long ago, in system clock cycles; stays for the cycle after `comes`.
+    /// Cycles since then, in system clock cycles; stable in the cycle after `comes`.
     pub ago_cycles: Signal<Out, Bits<3>>,
     /// All pulses are sent.
     pub all_sent: Signal<Out, Bit>,
-    /// CLOCK is to be held LOW.
+    /// CLOCK must be held LOW.
     pub holds: Signal<Out, Bit>,
-    /// It waits for what is under way.
+    /// CLOCK waits for the pulses on the cable.
     pub stalled: Signal<Out, Bit>,
     has_double: Constant<Bit>,
     /// High if all pulses of the answer are sent.
@@ -134,7 +134,7 @@ impl Logic for LastEdge {
             self.waited.d.next = false;
         }
 
-        // With few cycles in a bit the edge has come back before the answer was worked upon.
+        // With few cycles in a bit the edge has come back before the answer was processed.
         self.ago_cycles.next = 0.into();
         if self.has_double.val() {
             if self.is_there.val() {

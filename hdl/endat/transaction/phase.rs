@@ -1,9 +1,9 @@
-//! What the wire is doing, in the order of a frame.
+//! Phases of the wire, in the order of a frame.
 
 use rtl_design::States;
 use rust_hdl::prelude::*;
 
-/// What the wire is doing.
+/// Phase of the wire.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum Phase {
     /// Idle, but data has not yet been low for tR.
@@ -14,7 +14,7 @@ pub enum Phase {
     FirstLow,
     /// Mode command, turnaround, waiting for the start bit, answer; then the supplement.
     Frame,
-    /// The last CRC bit has been taken; the cell after it must be high.
+    /// The last CRC bit has been sampled; the cell after it must be high.
     Tail,
     /// Clock and data high: recovery time tm.
     Recovery,

@@ -1,9 +1,9 @@
-//! Primary cause: one out of all the flags of a frame.
+//! Primary cause: selects one of the flags of a frame.
 
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Picks the cause that explains the others; what stands later wins.
+/// Selects the cause that explains the others; a later assignment wins.
 #[derive(LogicBlock, Block)]
 pub struct PrimaryCause {
     /// Raw flags, one bit for each fault; bits as in the register map.
@@ -22,7 +22,7 @@ impl Logic for PrimaryCause {
         if self.flags.val().get_bit(18) {
             self.cause.next = 17.into();
         }
-        // CRC before F1 before F2: error bits of a spoilt frame mean nothing.
+        // CRC before F1 before F2: error bits of a corrupted frame are invalid.
         if self.flags.val().get_bit(5) {
             self.cause.next = 6.into();
         }

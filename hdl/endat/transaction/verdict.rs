@@ -1,14 +1,14 @@
-//! Verdict: what has happened to a frame is registered, then told with its primary cause.
+//! Verdict: registers the faults of a frame, then reports them with the primary cause.
 //!
 //! ```text
 //! answer_taken, give_up ...  ____/~~\_______________
-//! taken, gave_up             _______/~~\____________    the flags are put together
-//! prove                      ___________/~~\________    the bit that follows the answer fits, too
-//! decides                    ______________/~~\_____    a cycle later: nothing that is sampled now is in this path
+//! taken, gave_up             _______/~~\____________    the flags are combined
+//! prove                      ___________/~~\________    the bit after the answer is right, too
+//! decides                    ______________/~~\_____    a cycle later: keeps the present sample out of this path
 //! publish, late_fault, over  _________________/~~\__    cause and flags stay until the next one
 //! ```
 //!
-//! An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
+//! An answer is published after the bit that follows it: one verdict for everything seen in the frame. A later fault (DATA does
 //! not fall, additional data of another length) withdraws it.
 
 use super::cause::{self, flag};
@@ -27,33 +27,33 @@ pub struct Verdict {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Flags that go with `give_up`, `refuse` or `announce`; bits as the raw flags in the register map.
+    /// Flags for `give_up`, `refuse` or `announce`; bits as the raw flags in the register map.
     pub found: Signal<In, Bits<20>>,
-    /// Strobe: the answer has been taken; CRC and error bits decide.
+    /// Strobe: the answer has been received; CRC and error bits decide.
     pub answer_taken: Signal<In, Bit>,
-    /// Strobe, with `taken` or later: the answer has the length it should have; it is published.
+    /// Strobe, with `taken` or later: the answer has the right length; publish it.
     pub prove: Signal<In, Bit>,
-    /// The frame measures the delay: a good answer to a trigger is not published, its position is asked for once more.
+    /// The frame measures the delay: a good answer to a trigger is not published, and its position is requested again.
     pub is_measuring: Signal<In, Bit>,
-    /// Settings of the frame have changed under way.
+    /// Settings of the frame have changed during the frame.
     pub settings_upset: Signal<In, Bit>,
     /// Strobe: the frame is aborted.
     pub give_up: Signal<In, Bit>,
-    /// With `give_up`: its result has been published.
+    /// With `give_up`: the result of the frame has been published.
     pub is_late: Signal<In, Bit>,
     /// Strobe: no frame is begun for this trigger.
     pub refuse: Signal<In, Bit>,
-    /// Strobe: the result is told, and the frame goes on.
+    /// Strobe: the result is reported, and the frame continues.
     pub announce: Signal<In, Bit>,
-    /// Strobe: the frame has ended as it should.
+    /// Strobe: the frame has ended normally.
     pub normal_end: Signal<In, Bit>,
-    /// The clock goes on after this frame.
+    /// The clock continues after this frame.
     pub is_going: Signal<In, Bit>,
-    /// The frame is not a trigger's.
+    /// The frame belongs to a request, not to a trigger.
     pub is_own: Signal<In, Bit>,
-    /// Strobe: a trigger has been lost.
+    /// Strobe: a trigger is lost.
     pub lost: Signal<In, Bit>,
-    /// What an answer says of itself.
+    /// Checks of an answer.
     #[bundle]
     pub check: AnswerCheckIn,
     /// Recovery time tm of the frame that has ended.
@@ -62,28 +62,28 @@ pub struct Verdict {
     pub recovery_min_cycles: Signal<In, Bits<13>>,
     /// Strobe: `answer_taken`, a cycle later.
     pub taken: Signal<Out, Bit>,
-    /// An answer has been taken, and not been published yet.
+    /// An answer has been received, and is not published yet.
     pub is_pending: Signal<Out, Bit>,
     /// With `taken`: the CRC is right.
     pub is_received: Signal<Out, Bit>,
-    /// With `taken`: the CRC is wrong, and was so in the frame before.
+    /// With `taken`: the CRC is wrong, as in the previous frame.
     pub is_doubtful: Signal<Out, Bit>,
     /// From `taken` on: the answer has a wrong CRC, or an alarm.
     pub is_bad: Signal<Out, Bit>,
     /// Strobe: `give_up`, a cycle later.
     pub gave_up: Signal<Out, Bit>,
-    /// There is still something to tell.
+    /// High while a result is waiting to be published.
     pub is_telling: Signal<Out, Bit>,
-    /// What has become of a frame.
+    /// Outcome of a frame.
     #[bundle]
     pub told: ToldOut,
     /// Strobe one cycle before `publish`.
     pub publishes: Signal<Out, Bit>,
-    /// Strobe, instead of `publishes`: the delay is measured, the position itself comes next.
+    /// Strobe, instead of `publishes`: the delay is measured, and the position follows.
     pub once_more: Signal<Out, Bit>,
-    /// Strobe: a frame has ended in whatever way.
+    /// Strobe: a frame has ended, normally or not.
     pub over: Signal<Out, Bit>,
-    /// Strobe: a trigger has been lost.
+    /// Strobe: a trigger is lost.
     pub displaced: Signal<Out, Bit>,
     #[start]
     chooser: PrimaryCause,
@@ -91,7 +91,7 @@ pub struct Verdict {
     has_diagnosis: Constant<Bit>,
     /// Shortest recovery time tm after a request's frame, in system clock cycles.
     own_recovery_min_cycles: Constant<Bits<13>>,
-    /// Flags that this core can find.
+    /// Flags that this configuration can set.
     possible: Constant<Bits<20>>,
     crc_wrong: Constant<Bits<20>>,
     parallel_wrong: Constant<Bits<20>>,
@@ -103,9 +103,9 @@ pub struct Verdict {
     stored_upset: Constant<Bits<20>>,
     /// Flags found in the cycle before.
     seen: Reg<Bits<20>>,
-    /// High for one cycle after `prove` if an answer was pending and the frame was not given up.
+    /// High for one cycle after `prove` if an answer was pending and the frame was not aborted.
     prove_seen: Reg<Bit>,
-    /// `answer_taken`, one cycle later, unless the frame was given up.
+    /// `answer_taken`, one cycle later, unless the frame was aborted.
     was_taken: Reg<Bit>,
     /// `give_up`, one cycle later; never in two cycles in a row.
     was_given_up: Reg<Bit>,
@@ -127,7 +127,7 @@ pub struct Verdict {
     is_good: Reg<Bit>,
     /// Set when a measuring frame has no result, so its short tm is not reported; cleared by the next answer.
     is_silent: Reg<Bit>,
-    /// Set when an answer is taken; cleared when its length is proven or the frame is given up.
+    /// Set when an answer is received; cleared when its length is proven or the frame is aborted.
     pending: Reg<Bit>,
     /// High for one cycle: the published position is withdrawn.
     withdrawing: Reg<Bit>,
@@ -135,7 +135,7 @@ pub struct Verdict {
     confirming: Reg<Bit>,
     /// High for one cycle: a fault that was found after the result is reported.
     reports_late: Reg<Bit>,
-    /// High for one cycle: a frame has ended in whatever way.
+    /// High for one cycle: a frame has ended, normally or not.
     frame_over: Reg<Bit>,
     /// High from the end of a frame until its cause and flags are valid.
     telling: Reg<Bit>,
@@ -143,9 +143,9 @@ pub struct Verdict {
     was_lost: Reg<Bit>,
     /// Flags of the last result or later fault; the primary cause is chosen from them.
     flags_held: Reg<Bits<20>>,
-    /// Flags to report: those that came with the strobe, of the answer, of lost triggers and of upsets.
+    /// Flags to report: from the strobe, the answer, lost triggers and upsets.
     found_all: Signal<Local, Bits<20>>,
-    /// High if the received CRC does not fit the bits as they came, or as they are stored.
+    /// High if the received CRC does not match the bits as received, or as stored.
     crc_bad: Signal<Local, Bit>,
     /// High if the answer has a wrong CRC or an alarm bit.
     answer_bad: Signal<Local, Bit>,
@@ -206,12 +206,12 @@ impl Verdict {
 #[kernel]
 impl Logic for Verdict {
     fn update(&mut self) {
-        // Synthesis does not see by itself that some flags are never set.
+        // Mask flags that are never set, so that synthesis can remove them.
         self.seen.d.next = self.found.val() & self.possible.val();
         // An answer that is complete in the cycle of an abort is not left pending for the next frame.
         self.was_taken.d.next = self.answer_taken.val() & !self.was_given_up.q.val();
         self.was_given_up.d.next = self.give_up.val() & !self.was_given_up.q.val();
-        // Nothing has been published of a frame that measured.
+        // A measuring frame has published nothing.
         self.gave_up_late.d.next = self.give_up.val()
             & !self.was_given_up.q.val()
             & self.is_late.val()
@@ -220,13 +220,13 @@ impl Logic for Verdict {
         self.announced.d.next = self.announce.val() & self.has_diagnosis.val();
         self.ended.d.next = self.normal_end.val();
 
-        // Of what has been told: the choice is kept out of the path of what is found.
+        // From the registered flags: this keeps the selection out of the path of new faults.
         self.chooser.flags.next = self.flags_held.q.val();
         self.crc_bad.next = !(self.check.crc_ok.val() & self.check.stored_ok.val());
         self.answer_bad.next = self.crc_bad.val() | self.check.f1.val() | !self.check.f2.val();
         self.is_bad.next = self.answer_bad.val();
         self.is_pending.next = self.pending.q.val() | self.was_taken.q.val();
-        // A frame that is given up has that as its one result.
+        // An aborted frame has the abort as its only result.
         self.prove_seen.d.next =
             self.prove.val() & self.is_pending.val() & !self.was_given_up.q.val();
         self.proven.next =
@@ -259,13 +259,13 @@ impl Logic for Verdict {
             & !self.answer_bad.val()
             & !self.upset.val()
             & !self.is_own.val();
-        // A frame is not given up for nothing: a register that says so was upset.
+        // An abort without a flag means that a register was upset.
         if self.upset.val()
             | (self.has_guards.val() & self.was_given_up.q.val() & !self.seen.q.val().any())
         {
             self.found_all.next = self.found_all.val() | self.stored_upset.val();
         }
-        // That is for the result to say.
+        // The result reports this.
         if self.overrun.q.val() & !self.measured.val() {
             self.found_all.next = self.found_all.val() | self.trigger_overrun.val();
         }
@@ -289,7 +289,7 @@ impl Logic for Verdict {
             | self.early.val()
         {
             self.flags_held.d.next = self.found_all.val();
-            // What ends a frame that measures is told to nobody.
+            // The end of a measuring frame is not reported.
             if !self.is_own.val()
                 & !self.measured.val()
                 & !(self.early.val() & self.is_silent.q.val())
@@ -328,7 +328,7 @@ impl Logic for Verdict {
         self.is_received.next = self.was_taken.q.val() & !self.crc_bad.val();
         self.is_doubtful.next = self.was_taken.q.val() & self.crc_bad.val() & self.was_bad.q.val();
         self.is_good.d.next = self.proven.val() & !self.answer_bad.val() & !self.upset.val();
-        // `over` comes with cause and flags of whatever ended the frame.
+        // `over` comes with cause and flags of the fault that ended the frame.
         self.frame_over.d.next =
             self.ended.q.val() | self.was_given_up.q.val() | self.refused.q.val();
         self.telling.d.next = self.normal_end.val()

@@ -1,36 +1,36 @@
-//! What is asked of a channel that speaks SSI.
+//! Request for an SSI channel.
 
 use super::protocol::{BIT_DELAY_NS, BIT_DELAY_NS_MAX};
 use super::specials::{Special, Specials};
 use endat_regs::protocols::ssi::frame;
 use std::ops::RangeInclusive;
 
-/// Parity bit following the position.
+/// Parity bit after the position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Parity {
     /// No parity bit.
     #[default]
     None,
-    /// With it the number of ones is even.
+    /// Even number of ones, including the parity bit.
     Even,
-    /// With it the number of ones is odd.
+    /// Odd number of ones, including the parity bit.
     Odd,
 }
 
-/// What is asked of such a channel besides clock, width, filter and recovery time.
+/// Request for such a channel, in addition to clock, width, filter and recovery time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SsiSpec {
     /// The position is in Gray code.
     pub gray: bool,
-    /// Each position comes twice, and the two are compared.
+    /// The encoder sends each position twice; the card compares the two.
     pub twice: bool,
-    /// Parity bit following each position.
+    /// Parity bit after each position.
     pub parity: Parity,
     /// Special bits before the position.
     pub before: Specials,
     /// Bits after the position, and after its parity bit.
     pub after: Specials,
-    /// The encoder keeps its last bit on the line until the recovery time is over, instead of LOW.
+    /// The encoder keeps its last bit on the line, instead of LOW, until the recovery time is over.
     pub holds_end: bool,
     /// Longest time from a rising clock edge to its bit, at the encoder, in ns.
     pub bit_delay_ns: u64,
@@ -51,17 +51,17 @@ impl Default for SsiSpec {
 }
 
 impl SsiSpec {
-    /// Whether there is a parity bit.
+    /// True if a parity bit follows the position.
     pub const fn has_parity(&self) -> bool {
         !matches!(self.parity, Parity::None)
     }
 
-    /// Whether there are bits that are not position, besides such a parity bit.
+    /// True if there are special bits, not counting that parity bit.
     pub const fn has_specials(&self) -> bool {
         !self.before.is_empty() || !self.after.is_empty()
     }
 
-    /// Those bits, in the order in which they come.
+    /// The special bits, in the order of transmission.
     pub fn specials(&self) -> impl Iterator<Item = Special> + '_ {
         self.before.iter().chain(self.after.iter())
     }
@@ -90,7 +90,7 @@ impl SsiSpec {
             | (self.twice as u64) << frame::TWICE
     }
 
-    /// What a field is in it after reset, if that is something else than in EnDat.
+    /// Value of a field after reset, if it differs from EnDat.
     pub(crate) fn start(&self, register: &str, field: &str) -> Option<u64> {
         (register == "frame" && field == "command").then(|| self.frame())
     }

@@ -1,4 +1,4 @@
-//! Requests for SSI channels into cycles, and the length of a frame.
+//! Converts requests for SSI channels to cycles, and computes the length of a frame.
 
 use super::asked::SsiSpec;
 use super::protocol::{bit_delay_most_ns, CLOCK_HZ_MIN, LATENCY_CYCLES, PERIOD_CYCLES_MIN};
@@ -12,7 +12,7 @@ use crate::endat::timing::{cycles_at_least, cycles_at_most, cycles_to_ns, ENDAT_
 use crate::protocols::Spoken;
 
 impl SsiSpec {
-    /// The longest frame, up to where the next one may begin.
+    /// Time from a frame to the earliest next one, at most.
     pub(crate) fn cycle_max_cycles(&self, channel: &ChannelConfig, _: u64) -> u64 {
         let clocks = self.clocks(channel.position_bits);
         channel.first_low_extra_cycles
@@ -50,7 +50,7 @@ impl SsiSpec {
         let period = check_clock(check, request.clock_hz, system_hz, None)?;
         let half = period / 2;
         let filter_cycles = check_filter(check, request, half, 1, system_hz, "a clock period");
-        // One that is too long has its complaint, and must not narrow what else may be.
+        // A filter that is too long is already reported, and must not narrow other limits.
         let counted = filter_cycles.min(half).min(max_of(FILTER_BITS));
         self.check_bit_delay(check, request, [period, counted], system_hz);
         self.check_specials(check);
@@ -80,7 +80,7 @@ impl SsiSpec {
         })
     }
 
-    /// The bits that are not position fit the port and the result.
+    /// Checks that the special bits fit the port and the result.
     fn check_specials(&self, check: &mut Check<'_>) {
         let lists = [("bits_before", &self.before), ("bits_after", &self.after)];
         if let Some(special) = self.before.iter().find(|s| s.is_check()) {
@@ -127,7 +127,7 @@ impl SsiSpec {
         }
     }
 
-    /// Between two copies there is a LOW bit, and so there is one after the last.
+    /// A LOW bit separates two copies, so one follows the last copy, too.
     fn check_held_end(&self, check: &mut Check<'_>) {
         if self.twice {
             let text = "an encoder that sends its position twice is LOW after each copy; leave end_low out, or leave twice out";
@@ -146,7 +146,7 @@ impl SsiSpec {
         cycles
     }
 
-    /// A bit must be there before the next one is asked for.
+    /// A bit must be stable before the next clock edge.
     fn check_bit_delay(
         &self,
         check: &mut Check<'_>,
@@ -161,7 +161,7 @@ impl SsiSpec {
         }
         let input_cycles = LATENCY_CYCLES + filter_cycles;
         let cycles = self.needed_cycles(request, filter_cycles, system_hz);
-        // Nothing is proposed that would be refused itself.
+        // The remedy must itself be valid.
         let mut remedies = Vec::new();
         if system_hz / cycles >= CLOCK_HZ_MIN {
             remedies.push(format!("use at most {} Hz", system_hz / cycles));
@@ -189,7 +189,7 @@ impl SsiSpec {
         check.fail("clock_hz", request.clock_hz, text);
     }
 
-    /// Why a trigger would come before the channel is ready, and the remedy.
+    /// Message for a trigger that comes before the channel is ready, with the remedy.
     pub(crate) fn too_long(&self, index: usize, channel: &ChannelConfig, times: TooLong) -> String {
         let highest = times.highest_hz();
         let twice = match self.twice {
@@ -205,7 +205,7 @@ impl SsiSpec {
     }
 }
 
-/// The shortest recovery time is no longer than the longest.
+/// Checks that the shortest recovery time is at most the longest.
 fn check_recovery(check: &mut Check<'_>, request: &ChannelSpec) {
     let (least_ns, most_ns) = (request.recovery_min_ns, request.recovery_max_ns);
     if least_ns > most_ns {
@@ -233,7 +233,7 @@ fn check_recovery_low(
         // Three halves of an even period.
         let longest = cycles_at_most(least_ns, system_hz) / 3 * 2;
         let clock = match longest {
-            // Nothing is proposed that would be refused itself.
+            // The remedy must itself be valid.
             PERIOD_CYCLES_MIN.. if longest >= needed => {
                 format!("use at least {} Hz, or ", system_hz.div_ceil(longest))
             }
@@ -244,13 +244,13 @@ fn check_recovery_low(
             false => "recovery_min_ns",
         };
         let text = format!(
-            "the LOW behind the last bit is looked at {end_ns} ns after the last falling edge, recovery_min_ns = {least_ns} ends it sooner; {clock}raise {raised} to {end_ns}, if the encoder's is as long"
+            "DATA is checked for LOW {end_ns} ns after the last falling edge, but recovery_min_ns = {least_ns} ends the LOW sooner; {clock}raise {raised} to {end_ns}, if the encoder's is as long"
         );
         check.fail("clock_hz", request.clock_hz, text);
     }
 }
 
-/// The longest recovery time, and the cable, are counted together.
+/// One timer counts the longest recovery time and the cable.
 fn recovery_limits(cable_m: u64, system_hz: u64) -> Limits {
     let limits = limits("recovery_max_ns", Some(system_hz));
     let cable_m = cable_m.min(CABLE_M_MAX);

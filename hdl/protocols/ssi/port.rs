@@ -7,13 +7,13 @@
 //!              HIGH? ^           ^ taken             ^ taken    ^ LOW? result   ^ HIGH? if not: withdrawn
 //! ```
 //!
-//! A frame is good only if all of its bits have come. With `frame` bit 1 the clock goes on: a LOW bit, and the same position once more.
+//! A frame is good only if all of its bits have been received. With `frame` bit 1 the clock continues: a LOW bit, and the same position again.
 //!
-//! `RECOVERY` ends when DATA is HIGH, since the encoder is ready then. After a reset, an upset, or a frame at whose end DATA was HIGH, it lasts
+//! `RECOVERY` ends when DATA is HIGH, because the encoder is ready then. After a reset, an upset, or a frame with DATA HIGH at its end, it lasts
 //! for the whole recovery time: the encoder may be in the middle of a frame, where DATA is any of its bits.
 //! <!-- with has_guards -->
 //!
-//! Guards against upsets: the codes of the states differ in two bits, the clock is what the state says, bits and the edge that takes none are
+//! Guards against upsets: the codes of the states differ in two bits, the clock must match the state, bits and the edge without a bit are
 //! counted twice.
 //! <!-- end -->
 
@@ -43,29 +43,29 @@ pub struct SsiPort {
     pub tick_us: Signal<In, Bit>,
     /// Free-running time in system clock cycles.
     pub timestamp: Signal<In, Bits<32>>,
-    /// One-cycle strobe: take a position.
+    /// One-cycle strobe: read a position.
     pub trigger: Signal<In, Bit>,
     /// Line from the transceiver, asynchronous, HIGH at rest.
     pub data_i: Signal<In, Bit>,
-    /// Clock period, in system clock cycles, 4 to 2047; fewer count as 4 more. Constant while `busy`, as all settings.
+    /// Clock period, in system clock cycles, 4 to 2047; below 4, 4 is added. Constant while `busy`, as all settings.
     pub period_cycles: Signal<In, Bits<11>>,
-    /// How much longer than half a period the first low phase is.
+    /// Extension of the first low phase beyond half a period.
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
-    /// Kind of frame: bit 0 Gray code, bit 1 each position twice, bit 2 a frame may go out, bit 3 parity.
+    /// Kind of frame: bit 0 Gray code, bit 1 each position twice, bit 2 enables frames, bit 3 parity.
     pub frame: Signal<In, Bits<6>>,
     /// Position width, 1 to 48 bits.
     pub position_bits: Signal<In, Bits<6>>,
     /// Pulses of at most this many system clock cycles are ignored.
     pub filter_cycles: Signal<In, Bits<4>>,
-    /// DATA is HIGH again at the latest after so many system clock cycles (tm).
+    /// DATA is HIGH again after at most this many system clock cycles (tm).
     pub recovery_limit_cycles: Signal<In, Bits<13>>,
     /// Clock to the transceiver, from a register, HIGH at rest.
     pub ssi_clk: Signal<Out, Bit>,
-    /// A trigger would not be taken.
+    /// A trigger would be lost.
     pub busy: Signal<Out, Bit>,
     /// Strobe: a frame has ended.
     pub over: Signal<Out, Bit>,
-    /// Strobe: a trigger has been lost.
+    /// Strobe: a trigger is lost.
     pub trigger_lost: Signal<Out, Bit>,
     /// Result of a trigger.
     #[bundle]
@@ -77,17 +77,17 @@ pub struct SsiPort {
     primary: LowestCause,
     /// Result registers.
     snapshot: Snapshot,
-    /// Bits of a frame that are not position, if the encoder has any.
+    /// Bits of a frame that are not position, for encoders with such bits.
     special: Vec<SpecialBits>,
-    /// State of the frame; starts in `LAST`, because a reset can come in the middle of a frame.
+    /// State of the frame; starts in `LAST`, because a reset may come in the middle of a frame.
     #[start(STATE_LAST.into())]
     state: Reg<Bits<4>>,
     /// Clock to the transceiver; HIGH at rest.
     #[start(true)]
     clk: Reg<Bit>,
-    /// System clock cycles until the state can end.
+    /// System clock cycles until the state may end.
     timer: Reg<Bits<13>>,
-    /// Bits of the copy that are still to come.
+    /// Bits of the copy still to be received.
     left: Reg<Bits<6>>,
     /// Second copy of `left`, compared with it as a guard.
     left_too: Reg<Bits<6>>,
@@ -99,15 +99,15 @@ pub struct SsiPort {
     /// Second copy of `first`, compared with it as a guard.
     #[start(true)]
     first_too: Reg<Bit>,
-    /// High while the second copy of a position comes.
+    /// High during the second copy of a position.
     second: Reg<Bit>,
-    /// Position as it comes, most significant bit first.
+    /// Position as received, most significant bit first.
     word: Reg<Bits<48>>,
     /// Position of the second copy.
     again: Reg<Bits<48>>,
-    /// Parity of the bits stored in `word`, formed as they came.
+    /// Parity of the bits stored in `word`, formed while they arrived.
     sum: Reg<Bit>,
-    /// Parity of the bits of this copy as they were sent.
+    /// Parity of the bits of this copy as sent.
     ones: Reg<Bit>,
     /// High if the parity bit of a copy was wrong; cleared by a trigger.
     not_even: Reg<Bit>,
@@ -122,12 +122,12 @@ pub struct SsiPort {
     slow: Reg<Bit>,
     /// High from the first falling edge of the clock until the port is at rest.
     fallen: Reg<Bit>,
-    /// High if the kind of frame is one that must not go out. With `not_low`: no frame yet since a reset.
+    /// High if frames of this kind are disabled. With `not_low`: no frame yet since a reset.
     #[start(true)]
     unknown: Reg<Bit>,
     /// High if DATA was LOW before the first bit of the last frame.
     not_high: Reg<Bit>,
-    /// Clock period; one that is too short counts as 4 cycles more.
+    /// Clock period; below 4 cycles, 4 is added.
     period: Signal<Local, Bits<11>>,
     /// Length of a LOW phase.
     low_cycles: Signal<Local, Bits<11>>,
@@ -135,15 +135,15 @@ pub struct SsiPort {
     high_cycles: Signal<Local, Bits<11>>,
     /// High if the timer has run out.
     is_due: Signal<Local, Bit>,
-    /// High if the next rising edge takes the last bit of the frame.
+    /// High if the next rising edge samples the last bit of the frame.
     is_last: Signal<Local, Bit>,
-    /// High for one cycle when a bit is taken.
+    /// High for one cycle when a bit is sampled.
     takes_bit: Signal<Local, Bit>,
-    /// Bits of a copy, with those that are not position.
+    /// Bits of a copy, all of them.
     bits: Signal<Local, Bits<6>>,
     /// High if the bit belongs to the position, or is its parity bit.
     is_position: Signal<Local, Bit>,
-    /// Raw flags that the special bits give.
+    /// Raw flags of the frame.
     special_found: Signal<Local, Bits<12>>,
     /// Special bits that the result shows.
     shown: Signal<Local, Bits<8>>,
@@ -151,17 +151,17 @@ pub struct SsiPort {
     ends_copy: Signal<Local, Bit>,
     /// High if the bit is the parity bit of the position.
     is_parity: Signal<Local, Bit>,
-    /// Bit that came before, for Gray code.
+    /// Previous bit, for Gray code.
     bit_before: Signal<Local, Bit>,
     /// Bit of the position, decoded.
     value: Signal<Local, Bit>,
     /// High if the two copies differ.
     is_other: Signal<Local, Bit>,
-    /// High if the state is none, or the clock does not fit it.
+    /// High if the state is invalid, or the clock does not match it.
     is_astray: Signal<Local, Bit>,
     /// `torn`, with the upsets of this cycle.
     is_torn: Signal<Local, Bit>,
-    /// High if not all bits of all copies have come.
+    /// High if bits or copies are missing.
     is_short: Signal<Local, Bit>,
     /// High if an upset has changed the frame, or bits are missing.
     is_upset: Signal<Local, Bit>,
@@ -171,7 +171,7 @@ pub struct SsiPort {
     ready: Signal<Local, Bit>,
     /// High for one cycle when DATA is still LOW after the longest recovery time.
     is_late: Signal<Local, Bit>,
-    /// High if nothing is wrong with the frame.
+    /// High if the frame has no fault.
     good: Signal<Local, Bit>,
     /// High for one cycle when a trigger is lost.
     loses: Signal<Local, Bit>,
@@ -198,7 +198,7 @@ pub struct SsiPort {
     _specials: usize,
 }
 
-/// Codes of the states. Each has an even number of ones, so that no upset of one bit makes another state.
+/// Codes of the states. Each has an even number of ones, so that a single upset does not give another state.
 const STATE_REST: u64 = 0;
 const STATE_LOW: u64 = 3;
 const STATE_HIGH: u64 = 5;
@@ -207,7 +207,7 @@ const STATE_RECOVERY: u64 = 9;
 const STATE_JUDGE: u64 = 10;
 
 impl SsiPort {
-    /// For the parts of `asked` that are not settings: special bits, and the end of a frame; `guards` detect upsets of stored bits.
+    /// A port with the parts of `asked` that are not settings: special bits, and the end of a frame; `guards` detect upsets of stored bits.
     pub fn new(asked: &SsiSpec, guards: bool) -> Self {
         let special: Vec<SpecialBits> = match asked.has_specials() {
             true => vec![SpecialBits::new(&asked.before, &asked.after, guards)],

@@ -6,11 +6,11 @@
 //! stored     from the first one that is shown on               | up to the last one that is shown
 //! ```
 //!
-//! `left` counts the bits of a copy down to 1; the port keeps it twice. A parity bit directly after the position belongs to the position.
+//! `left` counts the bits of a copy down to 1; the port stores it twice. A parity bit directly after the position belongs to the position.
 //! CRC and parity are computed from zero for each copy.
 //! <!-- with has_guards -->
 //!
-//! A guard against upsets: the sum of the stored bits is kept as they come.
+//! A guard against upsets: the parity of the stored bits is formed while they arrive.
 //! <!-- end -->
 
 use super::cause;
@@ -27,37 +27,37 @@ pub struct SpecialBits {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: a trigger is taken.
+    /// Strobe: a trigger is accepted.
     pub begins: Signal<In, Bit>,
     /// Strobe: the second copy begins.
     pub repeats: Signal<In, Bit>,
-    /// Strobe: a bit is taken.
+    /// Strobe: a bit is sampled.
     pub takes: Signal<In, Bit>,
     /// DATA.
     pub level: Signal<In, Bit>,
-    /// Bits of the copy that are left, with the one that is taken.
+    /// Bits of the copy that are left, including the one that is sampled.
     pub left: Signal<In, Bits<6>>,
     /// Bits of the position.
     pub position_bits: Signal<In, Bits<6>>,
     /// A parity bit follows the position, and belongs to it.
     pub has_parity: Signal<In, Bit>,
-    /// Bits have come at all.
+    /// Bits have been received.
     pub heard: Signal<In, Bit>,
     /// Bits of a copy.
     pub all_bits: Signal<Out, Bits<6>>,
-    /// The bit that is taken is one of the position, or the parity bit that belongs to it.
+    /// The sampled bit belongs to the position, or is its parity bit.
     pub is_position: Signal<Out, Bit>,
-    /// It is the last of these.
+    /// The sampled bit is the last of these.
     pub ends_position: Signal<Out, Bit>,
-    /// Raw flags that the special bits of the frame give, bit n is that of code n + 1.
+    /// Raw flags from the special bits of the frame, bit n for code n + 1.
     pub found: Signal<Out, Bits<12>>,
-    /// Those that are shown, as they came last; the last one in bit 0, and 0 where a bit between them is not shown.
+    /// Special bits of the result, as last received; the last one in bit 0, and 0 for bits that are not shown.
     pub shown: Signal<Out, Bits<8>>,
     /// Special bits from the first to the last one that is shown, the last one in bit 0.
     status: Reg<Bits<14>>,
-    /// Parity of the bits stored in `status`, formed as they came.
+    /// Parity of the bits stored in `status`, formed while they arrived.
     sum: Reg<Bit>,
-    /// Alarm, power failure, not valid, as the first copy gave them.
+    /// Alarm, power failure, not valid, from the first copy.
     bad_before: Reg<Bits<3>>,
     /// Parity of all bits of the copy so far.
     ones: Reg<Bit>,
@@ -77,7 +77,7 @@ pub struct SpecialBits {
     stores: Signal<Local, Bit>,
     /// High if a 1 leaves the shift register as the bit enters.
     falls_out: Signal<Local, Bit>,
-    /// CRC with the bit that is taken.
+    /// CRC including the sampled bit.
     crc_shifted: Signal<Local, Bits<6>>,
     /// Alarm, power failure, not valid, of both copies.
     bad: Signal<Local, Bits<3>>,
@@ -119,9 +119,9 @@ pub struct SpecialBits {
     power_fail_mask: Constant<Bits<14>>,
     /// Bits of `status` that are power failures at 0.
     power_fail_low: Constant<Bits<14>>,
-    /// Bits of `status` that say the position is not valid.
+    /// Bits of `status` that mark the position not valid.
     not_valid_mask: Constant<Bits<14>>,
-    /// Bits of `status` that say it at 0.
+    /// Bits of `status` that mark it not valid at 0.
     not_valid_low: Constant<Bits<14>>,
     /// Bits left of the copy at the parity bit.
     parity_place: Constant<Bits<6>>,
@@ -134,7 +134,7 @@ pub struct SpecialBits {
 }
 
 impl SpecialBits {
-    /// For these before and after the position.
+    /// A block for these special bits before and after the position.
     pub fn new(before: &Specials, after: &Specials, guards: bool) -> Self {
         let places = Places::new(before, after);
         let number = |number: usize| Constant::new((number as u64).into());
@@ -176,7 +176,7 @@ impl SpecialBits {
 #[kernel]
 impl Logic for SpecialBits {
     fn update(&mut self) {
-        // Which bit of the copy this is.
+        // Index of the bit in the copy.
         self.own_bits.next =
             self.position_bits.val() + bit_cast::<6, 1>(self.has_parity.val().into());
         self.all_bits.next = self.own_bits.val() + self.count.val();
@@ -186,7 +186,7 @@ impl Logic for SpecialBits {
         self.is_position.next = !self.is_before.val() & !self.is_after.val();
         self.ends_position.next = self.left.val() == self.position_last.val();
 
-        // Those that are shown, and those between them.
+        // Stores the shown bits and those between them.
         self.stores.next = self.has_stored.val()
             & self.takes.val()
             & !self.is_position.val()
@@ -216,7 +216,7 @@ impl Logic for SpecialBits {
                     .into(),
             ) << 2);
 
-        // Of all bits as they are sent.
+        // Covers all bits as sent.
         self.crc_shifted.next = self.crc.q.val() << 1;
         if self.crc.q.val().get_bit(5) ^ self.level.val() {
             self.crc_shifted.next = (self.crc.q.val() << 1) ^ self.polynomial.val();
@@ -228,7 +228,7 @@ impl Logic for SpecialBits {
                     | (self.ones.q.val() ^ self.level.val() ^ self.parity_is_odd.val());
             }
             self.crc.d.next = self.crc_shifted.val();
-            // Bits followed by their CRC leave 0.
+            // Bits followed by their CRC give a CRC of 0.
             if self.has_crc.val() & (self.left.val() == self.crc_place.val()) {
                 self.is_wrong.d.next = self.is_wrong.q.val() | self.crc_shifted.val().any();
             }

@@ -1,4 +1,4 @@
-//! Bits of an SSI frame that are not position: what each is, and where it is.
+//! Special bits of an SSI frame: kind and place of each bit that is not position.
 //!
 //! Ref: ams, AS5045 data sheet (12 bits of position, five status bits, even parity over all bits before it); MagnTek, MT6701 data sheet (14 bits of
 //! position, four status bits, CRC of six bits, x^6 + x + 1, over the 18 bits before it, most significant bit first); maxon, EPOS4 firmware
@@ -7,9 +7,9 @@
 use super::cause;
 use std::fmt;
 
-/// Most of them in a frame, before and after the position together: with 48 bits and their parity bit they fit a counter of 6 bits.
+/// Most special bits in a frame, before and after the position together: with 48 bits and their parity bit they fit a counter of 6 bits.
 pub const SPECIALS_MAX: usize = 14;
-/// Most of them that a result shows.
+/// Most special bits in a result.
 pub const SHOWN_MAX: usize = 8;
 /// Bits of a [`Special::Crc6`].
 pub const CRC_BITS: usize = 6;
@@ -19,10 +19,10 @@ pub const CRC_POLYNOMIAL: u64 = 0b00_0011;
 /// A bit that is not position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Special {
-    /// Not looked at.
+    /// Not evaluated.
     #[default]
     Ignored,
-    /// Shown with the result; the position is taken whatever it is.
+    /// Shown with the result; does not affect the position.
     Shown,
     /// Alarm if 1.
     Alarm,
@@ -36,18 +36,18 @@ pub enum Special {
     Valid,
     /// The position is not valid if 1.
     NotValid,
-    /// With it all bits up to here have an even number of ones.
+    /// Even number of ones in all bits up to here, including it.
     ParityEven,
-    /// With it all bits up to here have an odd number of ones.
+    /// Odd number of ones in all bits up to here, including it.
     ParityOdd,
     /// Six bits: CRC of all bits before it.
     Crc6,
 }
 
 impl Special {
-    /// Each with its word and its meaning.
+    /// All kinds, with name and meaning.
     pub const ALL: [(Self, &'static str, &'static str); 11] = [
-        (Self::Ignored, "ignored", "not looked at"),
+        (Self::Ignored, "ignored", "not evaluated"),
         (Self::Shown, "shown", "shown with the result"),
         (Self::Alarm, "alarm", "alarm if 1"),
         (Self::NotAlarm, "not_alarm", "alarm if 0"),
@@ -72,13 +72,13 @@ impl Special {
         ),
     ];
 
-    /// Its word.
+    /// Name.
     pub fn word(self) -> &'static str {
         let row = Self::ALL.iter().find(|(special, ..)| *special == self);
         row.map_or("", |(_, word, _)| word)
     }
 
-    /// How many bits it is.
+    /// Number of bits.
     pub const fn bits(self) -> usize {
         match self {
             Self::Crc6 => CRC_BITS,
@@ -86,22 +86,22 @@ impl Special {
         }
     }
 
-    /// Whether it is stored and shown.
+    /// True if it is stored and shown.
     pub const fn is_shown(self) -> bool {
         !self.is_check() && !matches!(self, Self::Ignored)
     }
 
-    /// Whether it is the parity of the bits before it.
+    /// True if it is the parity of the bits before it.
     pub const fn is_parity(self) -> bool {
         matches!(self, Self::ParityEven | Self::ParityOdd)
     }
 
-    /// Whether it checks the bits before it.
+    /// True if it checks the bits before it.
     pub const fn is_check(self) -> bool {
         self.is_parity() || matches!(self, Self::Crc6)
     }
 
-    /// The cause that it may be, and the level at which it is.
+    /// Its cause, and the level that raises it.
     pub const fn cause(self) -> Option<(u64, bool)> {
         Some(match self {
             Self::Alarm => (cause::ALARM, true),
@@ -115,7 +115,7 @@ impl Special {
     }
 }
 
-/// Special bits that follow each other, in the order in which they come.
+/// Consecutive special bits, in the order of transmission.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Specials {
     list: [Special; SPECIALS_MAX],
@@ -123,7 +123,7 @@ pub struct Specials {
 }
 
 impl Specials {
-    /// These; none if there are more than [`SPECIALS_MAX`].
+    /// These bits; `None` if there are more than [`SPECIALS_MAX`].
     pub fn new(specials: &[Special]) -> Option<Self> {
         let mut list = [Special::default(); SPECIALS_MAX];
         list.get_mut(..specials.len())?.copy_from_slice(specials);
@@ -133,22 +133,22 @@ impl Specials {
         })
     }
 
-    /// In the order in which they come.
+    /// In the order of transmission.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = Special> + '_ {
         self.list[..self.count].iter().copied()
     }
 
-    /// How many bits they are.
+    /// Number of bits.
     pub fn bits(&self) -> usize {
         self.iter().map(Special::bits).sum()
     }
 
-    /// How many of them are shown.
+    /// Number of shown bits.
     pub fn shown(&self) -> usize {
         self.iter().filter(|s| s.is_shown()).count()
     }
 
-    /// Whether there is none.
+    /// True if there are no special bits.
     pub const fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -161,24 +161,24 @@ impl fmt::Display for Specials {
     }
 }
 
-/// Where the bits of a copy are that are not position, as the port has it.
+/// Places of the special bits in a copy, as the port uses them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Places {
-    /// Bits before the position, and after it.
+    /// Bits before the position.
     pub before: usize,
-    /// See `before`.
+    /// Bits after the position.
     pub after: usize,
-    /// Bits of the shift register for those that are shown, and the bits at the end of a copy that do not go into it.
+    /// Bits of the shift register for the shown bits.
     pub stored: usize,
-    /// See `stored`.
+    /// Bits at the end of a copy that do not go into the shift register.
     pub tail: usize,
-    /// Places in the shift register of those that are shown, in the order in which they come.
+    /// Places of the shown bits in the shift register, in the order of transmission.
     pub shown: Vec<usize>,
-    /// Places of the bits that are a cause: cause, place, level.
+    /// Places of the bits with a cause: cause, place, level.
     pub causes: Vec<(u64, usize, bool)>,
-    /// Bits of the copy that are left with its parity bit, which is odd; with the last bit of its CRC.
+    /// Bits of the copy that are left at its parity bit, and whether the parity is odd.
     pub parity: Option<(usize, bool)>,
-    /// See `parity`.
+    /// Bits of the copy that are left at the last bit of its CRC.
     pub crc: Option<usize>,
 }
 
@@ -189,7 +189,7 @@ impl Places {
             after: after.bits(),
             ..Self::default()
         };
-        // Each with the number of special bits from its last one to the end of the copy.
+        // Each with the number of special bits from its last bit to the end of the copy.
         let mut left = places.before + places.after;
         let mut all = vec![];
         for special in before.iter().chain(after.iter()) {
@@ -221,7 +221,7 @@ impl Places {
         places
     }
 
-    /// The bits of the shift register that are this cause: all of them, and of these the ones that are it at level 0.
+    /// Masks of the bits in the shift register with this cause: all of them, and those that raise it at level 0.
     pub fn masks(&self, cause: u64) -> [u64; 2] {
         let these = self.causes.iter().filter(|(of, ..)| *of == cause);
         these.fold([0, 0], |[all, low], (_, place, level)| {

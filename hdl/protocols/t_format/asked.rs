@@ -1,4 +1,4 @@
-//! What is asked of a T-format channel of a card.
+//! Request for a T-format channel of a card.
 
 use super::dsp::TFormatStart;
 use super::protocol::{
@@ -6,7 +6,7 @@ use super::protocol::{
 };
 use std::ops::RangeInclusive;
 
-/// What is asked of a T-format channel besides its input filter.
+/// Request for a T-format channel, in addition to its input filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TFormatSpec {
     /// Bit rate, in bits per second.
@@ -32,7 +32,7 @@ impl Default for TFormatSpec {
 }
 
 impl TFormatSpec {
-    /// What a field that only T-format has is after reset.
+    /// Value after reset of a field that only T-format has.
     pub(crate) fn start(&self, register: &str, field: &str) -> Option<u64> {
         match (register, field) {
             ("timing", "request_id") => Some(self.request.id().into()),
@@ -42,17 +42,17 @@ impl TFormatSpec {
     }
 }
 
-/// A rate that T-format encoders have.
+/// True if T-format encoders support the rate.
 pub fn is_rate(bit_hz: u64) -> bool {
     [BIT_HZ, FAST_BIT_HZ].contains(&bit_hz)
 }
 
-/// Whether a trigger may send the request: it must not wear the EEPROM out.
+/// True if a trigger may send the request; EEPROM requests would wear the EEPROM out.
 pub const fn is_triggered(request: Request) -> bool {
     !matches!(request, Request::ReadEeprom | Request::WriteEeprom)
 }
 
-/// Range of a key that only T-format has.
+/// Range of a key of T-format.
 pub(crate) fn range(key: &str) -> Option<RangeInclusive<u64>> {
     Some(match key {
         "bit_hz" => BIT_HZ..=FAST_BIT_HZ,

@@ -1,4 +1,4 @@
-//! Bit grid: one strobe in each bit, timed anew by edges of the line.
+//! Bit grid: one strobe in each bit, resynchronised by edges of the line.
 //!
 //! ```text
 //! line    ~~~~\_______________/~~~~~~~
@@ -38,7 +38,7 @@ impl Logic for BitGrid {
         if self.restart.val() {
             self.left.d.next = self.bit_cycles.val() >> 1;
         }
-        // At 2, not at 1: the restart itself took a cycle.
+        // At 2, not at 1: the restart takes a cycle.
         self.strobe.next = self.left.q.val() == 2;
     }
 }

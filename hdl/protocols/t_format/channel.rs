@@ -55,7 +55,7 @@ pub struct TFormatChannel {
     filter: InputFilter,
     /// Request and reply.
     exchange: Exchange,
-    /// Fields of the reply while they come.
+    /// Fields of the reply while it is received.
     #[start]
     reply: Reply,
     /// Result registers.
@@ -63,7 +63,7 @@ pub struct TFormatChannel {
 }
 
 impl TFormatChannel {
-    /// A channel; `guards` look for upsets of stored bits.
+    /// A channel; `guards` check for upsets of stored bits.
     pub fn new(guards: bool) -> Self {
         Self::from_parts(TFormatChannelParts {
             exchange: Exchange::new(guards),

@@ -1,4 +1,4 @@
-//! Requests for T-format channels into cycles, and the length of an exchange.
+//! Converts requests for T-format channels to cycles, and computes the length of an exchange.
 
 use super::asked::{is_rate, is_triggered, TFormatSpec};
 use super::protocol::{
@@ -14,12 +14,12 @@ use crate::protocols::Spoken;
 const POSITION_BITS: u32 = 48;
 
 impl TFormatSpec {
-    /// The longest exchange that is within the pauses: half a bit, request, reply, and the rest before the next one.
+    /// The longest exchange within the pauses: half a bit, request, reply, and the rest before the next one.
     pub(crate) fn cycle_max_cycles(&self, channel: &ChannelConfig, system_hz: u64) -> u64 {
         let bit_cycles = channel.period_cycles;
         let pauses = self.request.reply().len() as u64 - 1;
         let gaps_us = self.reply_gap_us + self.field_gap_us * pauses;
-        // A microsecond for all that is synchronised.
+        // One microsecond for all synchronisation.
         let waits_ns = 1_000 * (gaps_us + REST_US + 1);
         bit_cycles * (self.request.wire_bits() + 1) + cycles_at_least(waits_ns, system_hz)
     }
@@ -50,7 +50,7 @@ impl TFormatSpec {
             check.fail(
                 "request",
                 u64::from(self.request.id()),
-                "goes to the EEPROM, which a trigger must not; use 3, and the word t_format<n>.send for the EEPROM".into(),
+                "accesses the EEPROM, which a trigger must not; use 3, and the word t_format<n>.send for the EEPROM".into(),
             );
         }
         self.check_range(check, request);
@@ -75,7 +75,7 @@ impl TFormatSpec {
         })
     }
 
-    /// Refuses bits of what a trigger does not bring.
+    /// Rejects bits of a part that a trigger does not bring.
     fn check_range(&self, check: &mut Check<'_>, request: &ChannelSpec) {
         let id = self.request.id();
         let brings = |content| self.request.reply().contains(&content);
@@ -95,7 +95,7 @@ impl TFormatSpec {
         }
     }
 
-    /// Why a trigger would come before the channel is ready, and the remedy.
+    /// Message for a trigger that comes before the channel is ready, with the remedy.
     pub(crate) fn too_long(&self, index: usize, _: &ChannelConfig, times: TooLong) -> String {
         let highest = times.highest_hz();
         format!(
@@ -107,7 +107,7 @@ impl TFormatSpec {
     }
 }
 
-/// The cycles of a bit, if the rate can be made well enough.
+/// The cycles of a bit, if the rate is accurate enough.
 fn check_rate(check: &mut Check<'_>, bit_hz: u64, system_hz: u64) -> Option<u64> {
     let bit_cycles = period_cycles(bit_hz, system_hz);
     if bit_cycles < CARD_BIT_CYCLES_MIN {

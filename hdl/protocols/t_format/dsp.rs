@@ -1,4 +1,4 @@
-//! T-format receiver at the 16-bit bus of a signal processor.
+//! T-format receiver with the 16-bit bus of a signal processor.
 //!
 //! ```text
 //! bus pins --BusStrobes--> request, settings --> Exchange -> transceiver
@@ -17,11 +17,11 @@
 //! | 6 | CRC | communication alarm | settings: 5:0 reply gap in us, 8 fast rate, 11:9 field gap in us, 15:12 filter in clocks |
 //! | 7 | EEPROM data | 11:8 cause, 12 and 13 single- and multi-turn valid, 14 trigger overrun, 15 busy | 6:0 EEPROM address, 15:8 EEPROM data |
 //!
-//! Control data: 3:0 ID of the reply, 4 it is that of the request, 5 communication alarm, 7 fresh. Communication alarm: 0 no
-//! answer, 1 no header, 2 field missing, 3 delimiter, 4 parity, 5 another ID, 6 CRC, 7 the encoder complains.
+//! Control data: 3:0 ID of the reply, 4 it equals that of the request, 5 communication alarm, 7 fresh. Communication alarm: 0 no
+//! answer, 1 no header, 2 field missing, 3 delimiter, 4 parity, 5 another ID, 6 CRC, 7 the encoder reports an error.
 //!
-//! Data are at the pins 4 clocks after the address and change 4 clocks after it changes. Reading address 0 latches what
-//! addresses 1 to 7 show, bit 15 of address 7 excepted. While that bit is set writes are ignored, but a request counts as trigger.
+//! Data reach the pins 4 clocks after the address and change 4 clocks after it changes. Reading address 0 latches the content of
+//! addresses 1 to 7, except bit 15 of address 7. While that bit is set writes are ignored, but a request counts as trigger.
 
 use super::exchange::Exchange;
 use super::ports::{FieldBitsOut, ReplyPartsOut};
@@ -35,7 +35,7 @@ use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// What a T-format receiver starts with; all of it can be set by the processor.
+/// Start values of a T-format receiver; the processor can change all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TFormatStart {
     /// 5 Mbit/s instead of 2.5 Mbit/s.
@@ -57,7 +57,7 @@ impl Default for TFormatStart {
 }
 
 impl TFormatStart {
-    /// Settings after reset unless others are given.
+    /// Default settings after reset.
     pub const DEFAULT: Self = Self {
         fast: false,
         reply_gap_us: 20,
@@ -82,7 +82,7 @@ pub struct AsyncDsp {
     pub clk_i: Signal<In, Clock>,
     /// Synchronous reset, active high.
     pub rst_i: Signal<In, Bit>,
-    /// The clock is one of 60 MHz; low = 20 MHz. A strap: it does not change while the receiver runs.
+    /// The clock runs at 60 MHz; low = 20 MHz. A strap: constant while the receiver runs.
     pub clk_select_i: Signal<In, Bit>,
     /// Trigger pin, asynchronous; a rising edge sends the last request again, unless it writes to the EEPROM.
     pub trigger_i: Signal<In, Bit>,
@@ -98,7 +98,7 @@ pub struct AsyncDsp {
     pub bus_data_i: Signal<In, Bits<16>>,
     /// Data to the processor, valid 4 clocks after the address.
     pub bus_data_o: Signal<Out, Bits<16>>,
-    /// The receiver drives the data lines, straight from the strobes.
+    /// The receiver drives the data lines; combinational from the strobes.
     pub bus_data_oe: Signal<Out, Bit>,
     /// Line to the transceiver.
     pub encoder_data_o: Signal<Out, Bit>,
@@ -115,7 +115,7 @@ pub struct AsyncDsp {
     filter: InputFilter,
     /// Request and reply.
     exchange: Exchange,
-    /// Fields of the reply while they come.
+    /// Fields of the reply while it is received.
     #[start]
     reply: ReplyBytes,
     /// Words of the results.
@@ -147,7 +147,7 @@ pub struct AsyncDsp {
     settings: Reg<Bits<16>>,
     /// EEPROM address and data; written with address 7.
     memory: Reg<Bits<16>>,
-    /// Parity of `memory` as written; wrong while that data must not be sent.
+    /// Parity of `memory` as written; wrong while the data must not be sent.
     #[start(true)]
     memory_sum: Reg<Bit>,
     /// High from a write of address 0 to the end of its exchange: only such a request can write to the EEPROM.
@@ -171,7 +171,7 @@ pub struct AsyncDsp {
 }
 
 impl AsyncDsp {
-    /// A receiver that starts with these settings; `guards` look for upsets of stored bits.
+    /// A receiver with these settings after reset; `guards` check for upsets of stored bits.
     pub fn new(start: &TFormatStart, guards: bool) -> Self {
         let cycles = |bit_hz: u64| SYSTEM_HZ.map(|hz| hz / bit_hz);
         let bits = [cycles(BIT_HZ), cycles(FAST_BIT_HZ)].concat();
@@ -203,7 +203,7 @@ impl Logic for AsyncDsp {
             cs_n = bus_cs_n_i, rd_n = bus_rd_n_i, wr_n = bus_wr_n_i, register_at = bus_address_i,
             data_in = bus_data_i
         );
-        // No register: the lines are free as soon as the strobe ends.
+        // Combinational: the lines are free as soon as the strobe ends.
         self.bus_data_oe.next = !self.bus_cs_n_i.val() & !self.bus_rd_n_i.val();
 
         self.select_0.d.next = self.clk_select_i.val();
@@ -234,7 +234,7 @@ impl Logic for AsyncDsp {
         if self.strobes.written.val() & !self.strobes.written_register.val().any() {
             self.start.d.next = true;
         }
-        // A byte is written once for each write of address 7 followed by one of address 0: neither the pin nor an upset repeats it.
+        // Each write of address 7 followed by one of address 0 writes one byte; neither the pin nor an upset repeats it.
         self.memory_fits.next = self.memory_is_new.q.val();
         if self.has_guards.val() {
             self.memory_fits.next = self.memory.q.val().xor() == self.memory_sum.q.val();

@@ -10,12 +10,12 @@
 //! ```
 //!
 //! A rising edge is the header if the two cells before it were LOW, its own is HIGH and the next one LOW. LOW pulses of less than a
-//! bit and a half are passed over until the reply gap has ended. Later fields are timed from their start bits.
+//! bit and a half are ignored until the reply gap has ended. Later fields are timed from their start bits.
 //!
-//! After a reply that did not come whole the next request waits until the line has been HIGH for longer than any field lasts. After a reset, which
-//! may have come in the middle of an exchange, it waits for the longest pause before a reply that there may be, 63 us, as well.
-//! Two states that do not know of each other must agree that a request is under way before the driver is on, and one that lasts too long is
-//! cut. From the header on a reply is refused if its level changes twice within half a bit.
+//! After an incomplete reply the next request waits until the line has been HIGH for longer than any field lasts. A reset may
+//! come in the middle of an exchange; after it the next request also waits for the longest possible pause before a reply, 63 us.
+//! The driver is on only if two independent states agree that a request is under way, and a request that lasts too long is
+//! cut. From the header on a reply is rejected if its level changes twice within half a bit.
 
 mod kernel;
 
@@ -27,10 +27,10 @@ use rtl_design::reg::Reg;
 use rtl_design::{Block, States};
 use rust_hdl::prelude::*;
 
-/// Where the exchange is.
+/// Phase of the exchange.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum Phase {
-    /// Nothing to do.
+    /// Idle.
     Rest,
     /// A field of the request is sent.
     Send,
@@ -38,7 +38,7 @@ pub enum Phase {
     Release,
     /// Waiting for a field to begin.
     Wait,
-    /// A field of the reply is taken.
+    /// A field of the reply is received.
     Field,
     /// The result is published.
     Judge,
@@ -73,11 +73,11 @@ pub struct Exchange {
     pub field_gap_us: Signal<In, Bits<3>>,
     /// The line after synchroniser and filter.
     pub level: Signal<In, Bit>,
-    /// Status field of the reply, 0 before it has come.
+    /// Status field of the reply, 0 before it is received.
     pub status: Signal<In, Bits<8>>,
-    /// What is to be sent is what was asked for; a request that does not fit is cut.
+    /// The request to be sent is the requested one; otherwise it is cut.
     pub request_fits: Signal<In, Bit>,
-    /// Stay with the verdict: `publish` and all that belongs to it do not change.
+    /// Keep the verdict: `publish` and its outputs do not change.
     pub hold: Signal<In, Bit>,
     /// Line to the encoder, from a register.
     pub tx: Signal<Out, Bit>,
@@ -87,20 +87,20 @@ pub struct Exchange {
     pub busy: Signal<Out, Bit>,
     /// Strobe: `level` is a data bit of the reply.
     pub take: Signal<Out, Bit>,
-    /// Which field of the reply a data bit belongs to.
+    /// Field of the reply that a data bit belongs to.
     #[bundle]
     pub field: FieldBitsOut,
-    /// Strobe: the exchange has ended; what follows belongs to it.
+    /// Strobe: the exchange has ended; the outputs below belong to it.
     pub publish: Signal<Out, Bit>,
     /// The reply is good.
     pub good: Signal<Out, Bit>,
     /// Raw flags, one bit for each fault; bits as in the register map.
     pub flags: Signal<Out, Bits<16>>,
-    /// The ID that the reply repeats.
+    /// ID echoed in the reply.
     pub reply_id: Signal<Out, Bits<4>>,
     /// CRC of the reply as received.
     pub crc: Signal<Out, Bits<8>>,
-    /// What replies to a request bring.
+    /// Parts in the reply to a request.
     #[bundle]
     pub parts: ReplyPartsOut,
     /// Timing of the bits.
@@ -112,7 +112,7 @@ pub struct Exchange {
     /// Bits of the request.
     #[start]
     bits: RequestBits,
-    /// Where the exchange is.
+    /// Phase of the exchange.
     phase: Reg<Phase>,
     /// Bit of the field: 15 = start bit, 0 to 7 = data, 8 = delimiter.
     index: Reg<Bits<4>>,
@@ -134,22 +134,22 @@ pub struct Exchange {
     owed: Reg<Bit>,
     /// Bits of the field so far, modulo 3, to find an upset of `index`.
     bits_mod_3: Reg<Bits<2>>,
-    /// High while the line can still carry a reply: requests are refused.
+    /// High while the line may still carry a reply: requests are rejected.
     #[start(true)]
     unsettled: Reg<Bit>,
     /// Check sum of the fields so far; its bits become the CRC.
     check: Reg<Bits<8>>,
-    /// ID that the reply repeats.
+    /// ID echoed in the reply.
     echo: Reg<Bits<4>>,
-    /// High if the request was refused.
+    /// High if the request was rejected.
     refused: Reg<Bit>,
-    /// High if a start bit has come since the request.
+    /// High if a start bit was received since the request.
     heard: Reg<Bit>,
     /// High if a field did not come in time, or the header was wrong.
     missed: Reg<Bit>,
     /// High if the parity of the control field is wrong.
     bad_parity: Reg<Bit>,
-    /// High if the reply repeats another ID or EEPROM address.
+    /// High if the reply echoes another ID or EEPROM address.
     bad_echo: Reg<Bit>,
     /// High if a delimiter was LOW.
     bad_delimiter: Reg<Bit>,
@@ -169,19 +169,19 @@ pub struct Exchange {
     turns: Signal<Local, Bit>,
     /// Half a bit, in system clock cycles.
     half_bit: Signal<Local, Bits<7>>,
-    /// High if an edge of the control field now is not one of a header.
+    /// High if an edge of the control field now is not a header.
     too_soon: Signal<Local, Bit>,
     /// Alarms of the status field; 0 after an upset.
     alarms: Signal<Local, Bits<2>>,
     /// High while a field is sent or taken.
     in_field: Signal<Local, Bit>,
-    /// High if the exchange has come to one of its regular ends.
+    /// High if the exchange has reached one of its regular ends.
     is_ended: Signal<Local, Bit>,
-    /// High if an upset was found, or the verdict comes where none is due.
+    /// High if an upset was found, or a verdict comes when none is due.
     is_astray: Signal<Local, Bit>,
     /// High for one cycle at a rising edge of the line.
     rising: Signal<Local, Bit>,
-    /// High while what was noted of the last exchange is cleared.
+    /// High while the notes of the last exchange are cleared.
     forget: Signal<Local, Bit>,
     /// High if the wait has ended.
     expired: Signal<Local, Bit>,
@@ -203,9 +203,9 @@ pub struct Exchange {
     wire_bit: Signal<Local, Bit>,
     /// Bit that enters the check sum.
     summed: Signal<Local, Bit>,
-    /// High if the request was refused because its ID is unknown.
+    /// High if the request was rejected because its ID is unknown.
     is_unknown: Signal<Local, Bit>,
-    /// High if the request was refused because the line was not at rest.
+    /// High if the request was rejected because the line was not at rest.
     is_not_idle: Signal<Local, Bit>,
     /// High if no start bit came.
     is_silent: Signal<Local, Bit>,
@@ -219,14 +219,14 @@ pub struct Exchange {
     request_us: Signal<Local, Bits<7>>,
     /// Raw flags of the verdict.
     raised: Signal<Local, Bits<16>>,
-    /// High if all of the reply has come as it should.
+    /// High if the whole reply was received correctly.
     is_whole: Signal<Local, Bit>,
-    /// High if the reply is good: complete, and without a complaint of the encoder.
+    /// High if the reply is good: complete, and without an error report of the encoder.
     is_good: Signal<Local, Bit>,
 }
 
 impl Exchange {
-    /// An exchange; `guards` look for upsets of its registers.
+    /// An exchange; `guards` check for upsets of its registers.
     pub fn new(guards: bool) -> Self {
         Self::from_parts(ExchangeParts {
             has_guards: Constant::new(guards),

@@ -1,4 +1,4 @@
-//! Field order: which field is under way, and which one follows it.
+//! Field order: the field under way, and the next one.
 //!
 //! ```text
 //! sent    Control -> end                  6: -> Address -> Data -> Crc    D: -> Address -> Crc
@@ -54,37 +54,37 @@ pub struct FieldOrder {
     pub reset: Signal<In, Bit>,
     /// Request ID.
     pub request_id: Signal<In, Bits<4>>,
-    /// The fields are those of the request.
+    /// The fields belong to the request.
     pub sending: Signal<In, Bit>,
     /// Strobe: begin with the control field.
     pub first: Signal<In, Bit>,
-    /// Strobe: go on to the next field.
+    /// Strobe: continue with the next field.
     pub step: Signal<In, Bit>,
-    /// There is such a request.
+    /// The request ID is known.
     pub is_known: Signal<Out, Bit>,
     /// The last field is under way.
     pub is_last: Signal<Out, Bit>,
-    /// It is none of the fields that a reply to the request has.
+    /// The field does not belong to a reply to the request.
     pub is_foreign: Signal<Out, Bit>,
-    /// It is the control field.
+    /// The field is the control field.
     pub is_control: Signal<Out, Bit>,
-    /// It is the status field.
+    /// The field is the status field.
     pub is_status: Signal<Out, Bit>,
-    /// It belongs to the single-turn position.
+    /// The field belongs to the single-turn position.
     pub is_single: Signal<Out, Bit>,
-    /// It is the kind of encoder.
+    /// The field is the kind of encoder.
     pub is_identity: Signal<Out, Bit>,
-    /// It belongs to the multi-turn position.
+    /// The field belongs to the multi-turn position.
     pub is_multi: Signal<Out, Bit>,
-    /// It is the alarm field.
+    /// The field is the alarm field.
     pub is_alarm: Signal<Out, Bit>,
-    /// It is an EEPROM address.
+    /// The field is an EEPROM address.
     pub is_address: Signal<Out, Bit>,
-    /// It is EEPROM data.
+    /// The field is EEPROM data.
     pub is_data: Signal<Out, Bit>,
-    /// It is the CRC.
+    /// The field is the CRC.
     pub is_crc: Signal<Out, Bit>,
-    /// What replies to a request bring.
+    /// Parts in the reply to a request.
     #[bundle]
     pub parts: ReplyPartsOut,
     /// Field under way.
@@ -169,14 +169,14 @@ impl Logic for FieldOrder {
         self.is_address.next = self.kind.q.val() == FieldKind::Address;
         self.is_data.next = self.kind.q.val() == FieldKind::Data;
         self.is_crc.next = self.kind.q.val() == FieldKind::Crc;
-        // Whatever else is under way in a request, it ends there.
+        // Any other field ends a request.
         self.is_sent.next = self.memory.val()
             & ((self.kind.q.val() == FieldKind::Control)
                 | (self.kind.q.val() == FieldKind::Address)
                 | (self.kind.q.val() == FieldKind::Data));
         self.is_last.next =
             (self.kind.q.val() == FieldKind::Crc) | (self.sending.val() & !self.is_sent.val());
-        // Without this a field would pass for another one, with a good CRC.
+        // Without this check a field could pass for another one, with a good CRC.
         self.is_foreign.next = (self.is_single_now.val() & !self.with_single.val())
             | (self.is_multi_now.val() & !self.is_turns.val() & !self.is_everything.val())
             | ((self.kind.q.val() == FieldKind::Identity)
@@ -240,7 +240,7 @@ impl Logic for FieldOrder {
                         self.kind.d.next = FieldKind::Crc;
                     }
                 }
-                // A code that is none ends the frame.
+                // An invalid code ends the frame.
                 _ => {
                     self.kind.d.next = FieldKind::Crc;
                 }

@@ -1,4 +1,4 @@
-//! Outcome: the result registers, changed in one clock cycle, with the last good position held, and the parity that it came with.
+//! Outcome: the result registers, changed in one clock cycle. They hold the last good position, and its parity as received.
 
 use super::ports::{FieldsIn, ReadingOut, ReplyPartsIn};
 use rtl_design::reg::Reg;
@@ -18,14 +18,14 @@ pub struct Outcome {
     pub good: Signal<In, Bit>,
     /// Raw flags.
     pub flags_in: Signal<In, Bits<16>>,
-    /// ID that the reply repeats.
+    /// ID echoed in the reply.
     pub reply_id_in: Signal<In, Bits<4>>,
     /// CRC as received.
     pub crc_in: Signal<In, Bits<8>>,
-    /// What a reply has brought, field by field.
+    /// Content of a reply, field by field.
     #[bundle("_in")]
     pub fields: FieldsIn,
-    /// What replies to a request bring.
+    /// Parts in the reply to a request.
     #[bundle]
     pub parts: ReplyPartsIn,
     /// Outputs of a receiver without registers.
@@ -39,23 +39,23 @@ pub struct Outcome {
     count: Reg<Bits<8>>,
     /// Last good single-turn position.
     single: Reg<Bits<24>>,
-    /// High if one has come since reset.
+    /// High if a single-turn position was received since reset.
     has_had_single: Reg<Bit>,
     /// Last good multi-turn position.
     multi: Reg<Bits<24>>,
-    /// High if one has come since reset.
+    /// High if a multi-turn position was received since reset.
     has_had_multi: Reg<Bit>,
-    /// Kind of encoder, as it came last.
+    /// Kind of encoder, last received.
     identity: Reg<Bits<8>>,
-    /// EEPROM data as they came last.
+    /// EEPROM data, last received.
     memory: Reg<Bits<8>>,
-    /// Alarm field as it came last.
+    /// Alarm field, last received.
     alarms: Reg<Bits<8>>,
     /// Status field of the last reply.
     state: Reg<Bits<8>>,
     /// CRC of the last reply.
     received: Reg<Bits<8>>,
-    /// ID that the last reply repeats.
+    /// ID echoed in the last reply.
     echo: Reg<Bits<4>>,
     /// Raw flags 0 to 8 of the last exchange.
     low_flags: Reg<Bits<9>>,
@@ -65,20 +65,20 @@ pub struct Outcome {
     upset: Reg<Bit>,
     /// Raw flag 15 of the last exchange: a trigger was lost.
     overrun: Reg<Bit>,
-    /// Parity of `single` and its valid bit, as it came.
+    /// Parity of `single` and its valid bit, as received.
     single_sum: Reg<Bit>,
-    /// Parity of `multi` and its valid bit, as it came.
+    /// Parity of `multi` and its valid bit, as received.
     multi_sum: Reg<Bit>,
     /// High for one cycle when a good reply is taken.
     take: Signal<Local, Bit>,
     /// Raw flags 12 and 13: alarms of the status field; 0 after an upset.
     alarm_flags: Signal<Local, Bits<2>>,
-    /// 1 if the parities are given to the outside.
+    /// 1 if the parities are outputs.
     has_guards: Constant<Bit>,
 }
 
 impl Outcome {
-    /// An outcome; with `guards` the parities of the positions go with them, otherwise they are 0.
+    /// An outcome; with `guards` it outputs the parities of the positions, otherwise 0.
     pub fn new(guards: bool) -> Self {
         Self::from_parts(OutcomeParts {
             has_guards: Constant::new(guards),
@@ -136,7 +136,7 @@ impl Logic for Outcome {
         self.reading.status.next = self.state.q.val();
         self.reading.crc.next = self.received.q.val();
         self.reading.reply_id.next = self.echo.q.val();
-        // Complaints and alarms are in the status field; an alarm reported with an upset would hide it.
+        // Error reports and alarms are in the status field; an alarm reported with an upset would hide the upset.
         self.alarm_flags.next = self.state.q.val().get_bits::<2>(4);
         if self.upset.q.val() {
             self.alarm_flags.next = 0.into();

@@ -7,8 +7,8 @@
 //!                                   +-> answer, fields (all)   -> host_word
 //! ```
 //!
-//! An exchange is one of a trigger, or one that the host has asked for; only the first gives a result. The position of a result is
-//! multi-turn (bits 47..24) and single-turn (23..0); a part that the reply does not bring stays as it was.
+//! A trigger or the host starts an exchange; only a triggered one gives a result. The position of a result is
+//! multi-turn (bits 47..24) and single-turn (23..0); a part that the reply does not bring stays unchanged.
 
 use super::cause;
 use super::exchange::Exchange;
@@ -38,13 +38,13 @@ pub struct TFormatPort {
     pub tick_us: Signal<In, Bit>,
     /// Free-running time in system clock cycles.
     pub timestamp: Signal<In, Bits<32>>,
-    /// One-cycle strobe: take a position.
+    /// One-cycle strobe: read a position.
     pub trigger: Signal<In, Bit>,
     /// Line from the transceiver, asynchronous, idle HIGH.
     pub data_i: Signal<In, Bit>,
-    /// Request ID of a triggered exchange, those of the EEPROM excepted; constant while `busy`, as all settings.
+    /// Request ID of a triggered exchange, except EEPROM requests; constant while `busy`, as all settings.
     pub request_id: Signal<In, Bits<4>>,
-    /// System clock cycles in a bit, 8 to 127; fewer count as 8 more.
+    /// System clock cycles in a bit, 8 to 127; below 8, 8 is added.
     pub bit_cycles: Signal<In, Bits<7>>,
     /// Longest pause before the reply, in microseconds.
     pub reply_gap_us: Signal<In, Bits<6>>,
@@ -56,34 +56,34 @@ pub struct TFormatPort {
     pub data_o: Signal<Out, Bit>,
     /// Driver enable of the transceiver, from a register.
     pub data_oe: Signal<Out, Bit>,
-    /// A trigger would not be taken.
+    /// A trigger would be lost.
     pub busy: Signal<Out, Bit>,
     /// Strobe: an exchange has ended.
     pub over: Signal<Out, Bit>,
-    /// It was the host's.
+    /// The exchange was requested by the host.
     pub over_request: Signal<Out, Bit>,
-    /// Strobe: a trigger has been lost.
+    /// Strobe: a trigger is lost.
     pub trigger_lost: Signal<Out, Bit>,
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
     /// Word that the host accesses, counted from the first of the port in the register map.
     pub host_address: Signal<In, Bits<3>>,
-    /// Strobe: read it.
+    /// Strobe: read the word.
     pub host_read: Signal<In, Bit>,
     /// The word read.
     pub host_word: Signal<Out, Bits<32>>,
-    /// Strobe: write one half of it.
+    /// Strobe: write one half of the word.
     pub host_write: Signal<In, Bit>,
-    /// The half: 1 = high. Write the low one last: it acts.
+    /// Half to write: 1 = high. If written last, the low half acts.
     pub host_half: Signal<In, Bit>,
-    /// What to write.
+    /// Data to write.
     pub host_data: Signal<In, Bits<16>>,
     /// Synchroniser and filter of the line.
     filter: InputFilter,
     /// Request and reply.
     exchange: Exchange,
-    /// Fields of the reply while they come.
+    /// Fields of the reply while it is received.
     #[start]
     reply: Reply,
     /// Cause of the result.
@@ -99,7 +99,7 @@ pub struct TFormatPort {
     lost: Reg<Bit>,
     /// High in the cycle after a trigger was lost.
     is_lost: Reg<Bit>,
-    /// High if the exchange under way is the host's.
+    /// High if the exchange under way was requested by the host.
     own: Reg<Bit>,
     /// Second copy of `own`, compared with it as a guard.
     own_too: Reg<Bit>,
@@ -113,12 +113,12 @@ pub struct TFormatPort {
     send_address: Reg<Bits<7>>,
     /// EEPROM data of the host's request.
     send_data: Reg<Bits<8>>,
-    /// Parity of the host's request as written; wrong after it was sent and before one is written.
+    /// Parity of the host's request as written; wrong after it is sent and before one is written.
     #[start(true)]
     send_sum: Reg<Bit>,
-    /// EEPROM data as they came last.
+    /// EEPROM data, last received.
     memory: Reg<Bits<8>>,
-    /// ID that the reply to the host's request repeated.
+    /// ID echoed in the reply to the host's request.
     echo: Reg<Bits<4>>,
     /// Cause of the host's exchange; 0 = good.
     own_cause: Reg<Bits<4>>,
@@ -126,9 +126,9 @@ pub struct TFormatPort {
     done: Reg<Bit>,
     /// Status field of the last reply.
     status: Reg<Bits<8>>,
-    /// Kind of encoder, as it came last.
+    /// Kind of encoder, last received.
     identity: Reg<Bits<8>>,
-    /// Alarm field as it came last.
+    /// Alarm field, last received.
     alarms: Reg<Bits<8>>,
     /// CRC of the last reply.
     crc: Reg<Bits<8>>,
@@ -136,21 +136,21 @@ pub struct TFormatPort {
     has_had_single: Reg<Bit>,
     /// High if the position has a multi-turn part.
     has_had_multi: Reg<Bit>,
-    /// Word that the host reads, as of the strobe of its read.
+    /// Word for the host, latched at the strobe of its read.
     shown: Reg<Bits<32>>,
     /// 1 if upsets of stored bits are detected.
     has_guards: Constant<Bit>,
     /// High while an exchange is under way, or the rest after it.
     is_busy: Signal<Local, Bit>,
-    /// High if the exchange is the host's: both copies say so.
+    /// High if both copies mark the exchange as the host's.
     is_own: Signal<Local, Bit>,
     /// High if the two copies differ: an upset.
     is_torn: Signal<Local, Bit>,
-    /// Parity of the host's request as it is stored now.
+    /// Parity of the host's request as stored.
     send_sum_now: Signal<Local, Bit>,
-    /// High if the host's request is still as it was written.
+    /// High if the host's request is stored as written.
     send_fits: Signal<Local, Bit>,
-    /// High if the positions have their parity, and it is known whose exchange this is.
+    /// High if the positions match their parity, and the owner of the exchange is certain.
     reply_fits: Signal<Local, Bit>,
     /// High if the reply is good.
     good: Signal<Local, Bit>,
@@ -158,7 +158,7 @@ pub struct TFormatPort {
     own_busy: Signal<Local, Bit>,
     /// High for one cycle when the host's exchange begins.
     own_start: Signal<Local, Bit>,
-    /// High if the exchange that begins or is under way is the host's.
+    /// High if the exchange that begins or is under way was requested by the host.
     own_now: Signal<Local, Bit>,
     /// High for one cycle when an exchange begins.
     begins: Signal<Local, Bit>,
@@ -170,22 +170,22 @@ pub struct TFormatPort {
     overrun: Signal<Local, Bit>,
     /// High for one cycle when a trigger is lost.
     loses: Signal<Local, Bit>,
-    /// Raw flags of the exchange, with an upset of what is stored.
+    /// Raw flags of the exchange, including an upset of stored bits.
     sum_flags: Signal<Local, Bits<16>>,
     /// Raw flags of the result.
     flags_in: Signal<Local, Bits<16>>,
     /// Primary cause of the result.
     code: Signal<Local, Bits<5>>,
-    /// Single-turn part of the position: from the reply, or as it was.
+    /// Single-turn part of the position: from the reply, or unchanged.
     single: Signal<Local, Bits<24>>,
-    /// Multi-turn part of the position: from the reply, or as it was.
+    /// Multi-turn part of the position: from the reply, or unchanged.
     multi: Signal<Local, Bits<24>>,
     /// Word that the host's address selects.
     chosen: Signal<Local, Bits<32>>,
 }
 
 impl TFormatPort {
-    /// A port; `guards` look for upsets of stored bits.
+    /// A port; `guards` check for upsets of stored bits.
     pub fn new(guards: bool) -> Self {
         Self::from_parts(TFormatPortParts {
             has_guards: Constant::new(guards),
@@ -218,13 +218,13 @@ impl Logic for TFormatPort {
         self.answer_host();
     }
 
-    /// Whose turn it is: a trigger's, or else the host's. Between two exchanges the encoder gets a rest.
+    /// Arbitrates: triggers first, then the host. The encoder gets a rest between two exchanges.
     fn choose_turn(&mut self) {
         self.is_busy.next = self.exchange.busy.val() | self.rest.q.val().any();
         self.own_start.next = self.pending.q.val() & !self.is_busy.val() & !self.trigger.val();
         self.begins.next = !self.is_busy.val() & (self.trigger.val() | self.pending.q.val());
         self.own_now.next = self.own_start.val();
-        // With guards twice: whose exchange it is decides what goes out, and whose result it is.
+        // Stored twice with guards: the owner of the exchange decides what is sent, and who gets the result.
         self.is_own.next = self.own.q.val();
         self.is_torn.next = false;
         if self.has_guards.val() {
@@ -249,14 +249,14 @@ impl Logic for TFormatPort {
         }
     }
 
-    /// The host's request: not taken while there is one.
+    /// The host's request: ignored while one is pending.
     fn take_request(&mut self) {
         self.send_sum_now.next = self.send_id.q.val().xor()
             ^ self.send_address.q.val().xor()
             ^ self.send_data.q.val().xor();
         self.send_fits.next =
             !self.has_guards.val() | (self.send_sum_now.val() == self.send_sum.q.val());
-        // It goes out once.
+        // It is sent once.
         if self.exchange.publish.val() & self.is_own.val() {
             self.send_sum.d.next = !self.send_sum_now.val();
         }
@@ -292,7 +292,7 @@ impl Logic for TFormatPort {
         self.filter.majority.next = false;
         self.filter.both_edges.next = false;
         connect!(self.exchange <= self; tick_us, trigger = begins);
-        // A trigger never goes to the EEPROM: its address and data are the host's, and may change at any time.
+        // A trigger never accesses the EEPROM: address and data belong to the host, and may change at any time.
         self.exchange.request_id.next = self.request_id.val();
         if (self.request_id.val() == 6) | (self.request_id.val() == 13) {
             self.exchange.request_id.next = 15.into();
@@ -323,7 +323,7 @@ impl Logic for TFormatPort {
 
     /// Checks of the reply.
     fn judge(&mut self) {
-        // The result of the exchange under way, or of the next one, reports a trigger that was not taken.
+        // The result of the exchange under way, or of the next one, reports a lost trigger.
         self.overrun.next = self.lost.q.val() & !self.is_own.val();
         if self.exchange.publish.val() & !self.is_own.val() {
             self.lost.d.next = false;
@@ -334,7 +334,7 @@ impl Logic for TFormatPort {
         if self.loses.val() {
             self.lost.d.next = true;
         }
-        // What is stored is what came, and it is known for whom.
+        // The stored bits are the received bits, and their owner is certain.
         self.reply_fits.next = !self.is_torn.val();
         if self.has_guards.val()
             & self.exchange.parts.has_single.val()
@@ -351,7 +351,7 @@ impl Logic for TFormatPort {
         self.good.next = self.exchange.good.val() & self.reply_fits.val();
         self.sum_flags.next = bit_cast::<16, 15>(self.exchange.flags.val().get_bits::<15>(0));
         if !self.reply_fits.val() {
-            // An alarm reported with an upset would hide it.
+            // An alarm reported with an upset would hide the upset.
             self.sum_flags.next =
                 bit_cast::<16, 12>(self.exchange.flags.val().get_bits::<12>(0)) | 0x4000;
         }
@@ -366,7 +366,7 @@ impl Logic for TFormatPort {
         self.code.next = self.primary.cause.val();
     }
 
-    /// The last good position. A part that does not come stays as it was, if that was good.
+    /// Outputs the last good position. A part that the reply does not bring stays unchanged, if it was good.
     fn show_result(&mut self) {
         self.single.next = 0.into();
         if self.has_had_single.q.val() {
@@ -393,7 +393,7 @@ impl Logic for TFormatPort {
         self.snapshot.delay_cycles.next = 0.into();
         self.snapshot.told.publish.next = self.exchange.publish.val() & !self.is_own.val();
         self.snapshot.told.good.next = self.takes.val();
-        // All that an exchange shows is seen before its end.
+        // All faults of an exchange are known before its end.
         self.snapshot.told.late_fault.next = false;
         self.snapshot.told.withdraw.next = false;
         self.snapshot.told.confirm.next = true;
@@ -410,7 +410,7 @@ impl Logic for TFormatPort {
         FrameResultOut::link(&mut self.result, &mut self.snapshot.result);
     }
 
-    /// What the words of the host show. What the snapshot has withdrawn is there no more.
+    /// Content of the host's words. A position that the snapshot has withdrawn is not shown.
     fn answer_host(&mut self) {
         if !self.snapshot.result.position_valid.val() {
             self.has_had_single.d.next = false;

@@ -3,26 +3,26 @@
 //! Ref: Kang et al., "A FPGA implementation of a rotary machine receiver with detecting a header on the asynchronous serial
 //! communication system", 2004 (fields, header, seven-address map); Texas Instruments motor-control SDK,
 //! `position_sense/tamagawa_over_soc_uart` (rates, requests); HPMicro SDK, `samples/drivers/sei` (EEPROM, logged frames);
-//! Microchip T-Format Interface IP (complaint bits).
+//! Microchip T-Format Interface IP (error bits of the status field).
 
 use endat_regs::protocols::t_format::request;
 
 /// Bit rate, in bits per second.
 pub const BIT_HZ: u64 = 2_500_000;
-/// The faster rate that some encoders have, in bits per second.
+/// The faster rate of some encoders, in bits per second.
 pub const FAST_BIT_HZ: u64 = 5_000_000;
 /// Bits of a field: start (LOW), eight data bits LSB first, delimiter (HIGH).
 pub const FIELD_BITS: u64 = 10;
 /// System clocks that the `clk_select` pin chooses from, in hertz: LOW, HIGH.
 pub const SYSTEM_HZ: [u64; 2] = [20_000_000, 60_000_000];
-/// System clock cycles in a bit that the receiver takes.
+/// System clock cycles in a bit that the receiver supports.
 pub const BIT_CYCLES: std::ops::RangeInclusive<u64> = 4..=127;
-/// Fewest of them on a card, whose system clock is free: an edge is timed to an eighth of a bit.
+/// Fewest cycles in a bit on a card, with any system clock: an edge is timed to an eighth of a bit.
 pub const CARD_BIT_CYCLES_MIN: u64 = 8;
-/// Largest deviation of the bit rate that a card makes from the nominal one, in parts per million: a field is timed anew by its start bit,
-/// so its last bit is off by a tenth of a bit at most.
+/// Largest deviation of a card's bit rate from the nominal one, in parts per million: the start bit resynchronises each field,
+/// so its last bit is off by at most a tenth of a bit.
 pub const RATE_TOLERANCE_PPM: u64 = 10_000;
-/// Rest between two exchanges of a port, in microseconds; it begins within the last delimiter. One microsecond sooner at the earliest.
+/// Rest between two exchanges of a port, in microseconds, up to one less; it begins within the last delimiter.
 pub const REST_US: u64 = 2;
 /// Longest pause before a reply that can be set, in microseconds.
 pub const REPLY_GAP_US_MAX: u64 = 63;
@@ -30,17 +30,17 @@ pub const REPLY_GAP_US_MAX: u64 = 63;
 pub const FIELD_GAP_US_MAX: u64 = 7;
 /// Longest filter at 2.5 Mbit/s and a clock of 20 MHz, in system clock cycles: less than half a bit.
 pub const FILTER_CYCLES_MAX: u64 = 3;
-/// A wait ends this many microseconds after its setting at the latest, and one microsecond sooner at the earliest.
+/// A wait ends at most this many microseconds after its setting, and at most one microsecond before it.
 pub const WAIT_GRACE_US: u64 = 3;
-/// Address of the EEPROM that is the page register.
+/// EEPROM address of the page register.
 pub const EEPROM_PAGE_ADDRESS: u8 = 127;
 
-/// What a field carries.
+/// Content of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
     /// Sync code 0, 1, 0, request ID LSB first, and the parity of the ID.
     Control,
-    /// Bits 3..0 information, 4 counting error, 5 multi-turn alarm, 6 and 7 complaints about parity and delimiter of the request.
+    /// Bits 3..0 information, 4 counting error, 5 multi-turn alarm, 6 and 7 parity and delimiter error of the request.
     Status,
     /// A byte of the single-turn position, least significant first.
     SingleTurn,
@@ -58,7 +58,7 @@ pub enum Content {
     Crc,
 }
 
-/// A request, by what it asks for.
+/// A request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Request {
     /// ID 0: single-turn position.
@@ -82,7 +82,7 @@ pub enum Request {
 }
 
 impl Request {
-    /// All of them.
+    /// All requests.
     pub const ALL: [Self; 9] = [
         Self::SingleTurn,
         Self::MultiTurn,
@@ -115,7 +115,7 @@ impl Request {
         Self::ALL.into_iter().find(|r| r.id() == id)
     }
 
-    /// The control byte.
+    /// The control byte of this request.
     pub const fn control(self) -> u8 {
         control(self.id())
     }

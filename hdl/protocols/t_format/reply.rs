@@ -1,5 +1,5 @@
-//! Reply: the fields of a reply while they come, each in a shift register of its own, and the parities of the positions as they
-//! came, which go with them wherever they are kept.
+//! Reply: the fields of a reply while it is received, each in a separate shift register. The parities of the positions are formed on
+//! reception and stored with them everywhere.
 
 use super::ports::{FieldBitsIn, FieldsOut};
 use rtl_design::reg::Reg;
@@ -19,10 +19,10 @@ pub struct Reply {
     pub take: Signal<In, Bit>,
     /// The bit.
     pub level: Signal<In, Bit>,
-    /// Which field of the reply a data bit belongs to.
+    /// Field of the reply that a data bit belongs to.
     #[bundle]
     pub field: FieldBitsIn,
-    /// What a reply has brought, field by field.
+    /// Content of a reply, field by field.
     #[bundle]
     pub fields: FieldsOut,
     /// Status field so far; bits enter at the top.
@@ -35,9 +35,9 @@ pub struct Reply {
     byte_bits: Reg<Bits<8>>,
     /// Alarm field so far; bits enter at the top.
     alarm_bits: Reg<Bits<8>>,
-    /// Parity of the single-turn bits, formed as they came; cleared between exchanges.
+    /// Parity of the single-turn bits, formed while they arrived; cleared between exchanges.
     single_sum: Reg<Bit>,
-    /// Parity of the multi-turn bits, formed as they came; cleared between exchanges.
+    /// Parity of the multi-turn bits, formed while they arrived; cleared between exchanges.
     multi_sum: Reg<Bit>,
 }
 
@@ -47,7 +47,7 @@ impl Logic for Reply {
         self.single_sum.reset.next = self.reset.val() | self.idle.val();
         self.multi_sum.reset.next = self.reset.val() | self.idle.val();
         self.status_bits.reset.next = self.reset.val() | self.idle.val();
-        // What a frame has not filled is not taken, so these need no reset.
+        // Only fields filled by the frame are used, so these need no reset.
         self.single_bits.reset.next = false;
         self.multi_bits.reset.next = false;
         self.byte_bits.reset.next = false;

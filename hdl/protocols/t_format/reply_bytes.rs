@@ -1,11 +1,11 @@
-//! Reply bytes: the fields of a reply in registers that hand on bits while it comes, and bytes when it has come.
+//! Reply bytes: the fields of a reply in registers that shift bits during reception, and bytes afterwards.
 //!
 //! ```text
 //! bits    status <- level    alarm <- level    multi <- level    byte <- level    single <- level
 //! bytes   tail -> status -> alarm -> multi -> byte -> single -> head
 //! ```
 //!
-//! So no multiplexer is needed to fetch a field, and a bit takes one logic cell: its look-up table chooses the direction.
+//! So fetching a field needs no multiplexer, and a bit takes one logic cell: its look-up table selects the direction.
 
 use super::ports::FieldBitsIn;
 use rtl_design::reg::Reg;
@@ -25,22 +25,22 @@ pub struct ReplyBytes {
     pub take: Signal<In, Bit>,
     /// The bit.
     pub level: Signal<In, Bit>,
-    /// Which field of the reply a data bit belongs to.
+    /// Field of the reply that a data bit belongs to.
     #[bundle]
     pub field: FieldBitsIn,
-    /// All fields move on by a byte.
+    /// All fields advance by a byte.
     pub copy: Signal<In, Bit>,
-    /// Byte that enters after the last of them.
+    /// Byte that enters after the last field.
     pub tail: Signal<In, Bits<8>>,
-    /// The first byte: the low one of the single-turn position, before they move.
+    /// The first byte: before shifting the low one of the single-turn position.
     pub head: Signal<Out, Bits<8>>,
-    /// The byte following it.
+    /// The byte after it.
     pub second: Signal<Out, Bits<8>>,
     /// Bits 7 to 4 of the status field; constant while bytes move.
     pub status: Signal<Out, Bits<8>>,
-    /// Parity of the bits of the single-turn position that have come.
+    /// Parity of the received bits of the single-turn position.
     pub single_parity: Signal<Out, Bit>,
-    /// Parity of the bits of the multi-turn position that have come.
+    /// Parity of the received bits of the multi-turn position.
     pub multi_parity: Signal<Out, Bit>,
     /// Status field so far; passes bytes on while they are fetched.
     status_bits: Reg<Bits<8>>,
@@ -54,9 +54,9 @@ pub struct ReplyBytes {
     alarm_bits: Reg<Bits<8>>,
     /// Bits 7 to 4 of the status field, kept while bytes are fetched.
     judged: Reg<Bits<4>>,
-    /// Parity of the single-turn bits, formed as they came; cleared between exchanges.
+    /// Parity of the single-turn bits, formed while they arrived; cleared between exchanges.
     single_sum: Reg<Bit>,
-    /// Parity of the multi-turn bits, formed as they came; cleared between exchanges.
+    /// Parity of the multi-turn bits, formed while they arrived; cleared between exchanges.
     multi_sum: Reg<Bit>,
     /// High between exchanges, and in a reset.
     forget: Signal<Local, Bit>,
@@ -107,7 +107,7 @@ impl Logic for ReplyBytes {
                 bit_cast::<24, 16>(self.single_bits.q.val().get_bits::<16>(8))
                     | (bit_cast::<24, 8>(self.byte_bits.q.val()) << 16);
         } else {
-            // The verdict goes on needing these.
+            // The verdict still needs these.
             self.judged.d.next = self.status_bits.q.val().get_bits::<4>(4);
         }
         self.head.next = self.single_bits.q.val().get_bits::<8>(0);

@@ -1,4 +1,4 @@
-//! Request bits: the bit of a field that is sent, or that a reply has to repeat.
+//! Request bits: the bit of a field to send, or to expect in the reply.
 
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -14,7 +14,7 @@ pub struct RequestBits {
     pub data: Signal<In, Bits<8>>,
     /// The next bit of the CRC.
     pub crc_bit: Signal<In, Bit>,
-    /// Which bit of the field, 0 = first on the line.
+    /// Bit of the field, 0 = first on the line.
     pub index: Signal<In, Bits<3>>,
     /// The field is the control field.
     pub is_control: Signal<In, Bit>,

@@ -1,18 +1,18 @@
-//! Result banks: results as the words that the processor reads, in RAM; one of them is held while others come.
+//! Result banks: results as the processor's words, in RAM; one result is held while others arrive.
 //!
 //! ```text
-//! verdict -> step 3, 4, .. 15, 0, 1, 2 -> byte = head, or the one before -> RAM, bank `free`
+//! verdict -> step 3, 4, .. 15, 0, 1, 2 -> byte = head, or the previous one -> RAM, bank `free`
 //!                                   \--> free becomes latest
 //! address 0 is read: latest becomes held
 //! ```
 //!
-//! A byte of step n is the low (n even) or high (n odd) one of word n / 2. Of the four banks three are in use: `held`, which the processor
-//! reads, `latest`, and `free`, which the next result is written to as a whole: what a reply does not bring is copied from `latest`, out of a
-//! second RAM that has nothing else to do. So a result changes at once, and is held as long as the processor needs it.
+//! A byte of step n is the low (n even) or high (n odd) one of word n / 2. Three of the four banks are in use: `held`, which the processor
+//! reads, `latest`, and `free`, to which the next result is written as a whole. Parts that a reply does not bring are copied from `latest`, out of a
+//! second RAM for this purpose. So a result changes at once, and is held as long as the processor needs it.
 //! <!-- with has_guards -->
 //!
-//! The parity of the positions, formed of the bits as they came, is compared when the processor takes a result, in the clocks in which the
-//! processor still reads address 0, whose word is in no RAM: then words 1 to 4 are read.
+//! The parity of the positions, formed from the received bits, is compared when the processor takes a result: words 1 to 4 are read while the
+//! processor still reads address 0, whose word is not in RAM.
 //! <!-- end -->
 
 use super::ports::ReplyPartsIn;
@@ -30,32 +30,32 @@ pub struct ResultBanks {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// An exchange has ended; what follows belongs to it, and does not change while `hold` is high.
+    /// An exchange has ended; the inputs below belong to it, and do not change while `hold` is high.
     pub verdict: Signal<In, Bit>,
-    /// Not all of it has been taken yet.
+    /// The result has not been stored completely.
     pub hold: Signal<Out, Bit>,
     /// The reply is good.
     pub good: Signal<In, Bit>,
     /// Raw flags, one bit for each fault; bits as in the register map.
     pub flags: Signal<In, Bits<16>>,
-    /// ID that the reply repeats.
+    /// ID echoed in the reply.
     pub reply_id: Signal<In, Bits<4>>,
     /// CRC as received.
     pub crc: Signal<In, Bits<8>>,
-    /// Parity of the single-turn position as it came.
+    /// Parity of the single-turn position as received.
     pub single_parity: Signal<In, Bit>,
-    /// Parity of the multi-turn position as it came.
+    /// Parity of the multi-turn position as received.
     pub multi_parity: Signal<In, Bit>,
-    /// What replies to a request bring.
+    /// Parts in the reply to a request.
     #[bundle]
     pub parts: ReplyPartsIn,
     /// Next byte of the reply.
     pub head: Signal<In, Bits<8>>,
-    /// The one following it.
+    /// The byte after it.
     pub second: Signal<In, Bits<8>>,
-    /// Strobe: the bytes of the reply move on.
+    /// Strobe: the bytes of the reply advance.
     pub copy: Signal<Out, Bit>,
-    /// Byte that follows them.
+    /// Byte that follows the fields.
     pub tail: Signal<Out, Bits<8>>,
     /// Strobe: a new result can be read from the next cycle on.
     pub published: Signal<Out, Bit>,
@@ -63,7 +63,7 @@ pub struct ResultBanks {
     pub fresh: Signal<Out, Bit>,
     /// Address that the processor has selected.
     pub register: Signal<In, Bits<3>>,
-    /// It is being read.
+    /// The word is being read.
     pub reading: Signal<In, Bit>,
     /// Request ID, the word of address 0.
     pub request_id: Signal<In, Bits<4>>,
@@ -71,16 +71,16 @@ pub struct ResultBanks {
     pub busy: Signal<In, Bit>,
     /// The word, two clocks after `register`.
     pub word: Signal<Out, Bits<16>>,
-    /// Bytes that say how good the reply was.
+    /// Bytes with the checks of the reply.
     #[start]
     verdict_bytes: VerdictBytes,
     /// Low bytes of the words.
     #[start]
     low: Memory<8, 5>,
-    /// Their high bytes.
+    /// High bytes of the words.
     #[start]
     high: Memory<8, 5>,
-    /// The same bytes, for what a reply does not bring.
+    /// Copy of these bytes, for parts that a reply does not bring.
     #[start]
     known: Memory<8, 6>,
     /// Byte of the result that is stored next; 3 at rest, then up to 15 and from 0 to 2.
@@ -91,7 +91,7 @@ pub struct ResultBanks {
     clearing: Reg<Bit>,
     /// Complement of `clearing`, so that no single upset starts the filling.
     cleared: Reg<Bit>,
-    /// Bank that the next result is stored in.
+    /// Bank for the next result.
     #[start(1.into())]
     free: Reg<Bits<2>>,
     /// Bank of the latest result.
@@ -110,9 +110,9 @@ pub struct ResultBanks {
     had_single: Reg<Bit>,
     /// High if a good multi-turn position has come since reset.
     had_multi: Reg<Bit>,
-    /// Parity of the last good single-turn position, as it came.
+    /// Parity of the last good single-turn position, as received.
     single_sum: Reg<Bit>,
-    /// Parity of the last good multi-turn position, as it came.
+    /// Parity of the last good multi-turn position, as received.
     multi_sum: Reg<Bit>,
     /// `is_first` of the cycle before.
     was_first: Reg<Bit>,
@@ -158,11 +158,11 @@ pub struct ResultBanks {
     place: Signal<Local, Bits<3>>,
     /// Parity of the position bits in the word at the RAM's output.
     part: Signal<Local, Bit>,
-    /// High if the held bank is the one that was chosen, and its positions have their parity.
+    /// High if the held bank is the selected one, and its positions match their parity.
     fits: Signal<Local, Bit>,
     /// Cause in the word of address 7.
     cause: Signal<Local, Bits<4>>,
-    /// High if that cause explains a bad result: no upset is shown in its place.
+    /// High if that cause explains a bad result: then no upset is shown instead.
     is_explained: Signal<Local, Bit>,
     /// High byte of the word at the RAM's output.
     high_byte: Signal<Local, Bits<8>>,
@@ -173,7 +173,7 @@ pub struct ResultBanks {
 }
 
 impl ResultBanks {
-    /// Banks; `guards` look for upsets of what is stored.
+    /// Banks; `guards` check for upsets of stored bits.
     pub fn new(guards: bool) -> Self {
         Self::from_parts(ResultBanksParts {
             has_guards: Constant::new(guards),
@@ -200,14 +200,14 @@ impl Logic for ResultBanks {
         self.hold.next = !self.is_last.val() | self.clears.val();
         self.published.next = self.ends.val() & !self.clears.val();
 
-        // The bytes of the verdict follow the fields of the reply. So do EEPROM data, which are the same field as the kind of encoder.
+        // The bytes of the verdict follow the fields of the reply. So do EEPROM data, which share the field with the kind of encoder.
         self.takes_single.next = self.good.val() & self.parts.has_single.val();
         self.takes_multi.next = self.good.val() & self.parts.has_multi.val();
         connect!(self.verdict_bytes <= self; good, flags, reply_id);
         self.verdict_bytes.valid.next =
             bit_cast::<2, 1>((self.had_single.q.val() | self.takes_single.val()).into())
                 | (bit_cast::<2, 1>((self.had_multi.q.val() | self.takes_multi.val()).into()) << 1);
-        // Steps 3, 4, 5, 6 and 9: nine steps before it is their turn.
+        // Steps 3, 4, 5, 6 and 9: they enter nine steps before they are used.
         self.tail.next = self.crc.val();
         if self.step.q.val().get_bit(2) {
             self.tail.next = self.verdict_bytes.communication.val();
@@ -263,7 +263,7 @@ impl Logic for ResultBanks {
         self.known.write_address.next =
             bit_cast::<6, 4>(self.step.q.val()) | (bit_cast::<6, 2>(self.free.q.val()) << 4);
         self.known.write_data.next = self.byte.val();
-        // Nothing is written where the processor reads.
+        // No writes to the bank that the processor reads.
         self.writes.next = self.copies.val() & (self.free.q.val() != self.held.q.val());
         self.low.write_enable.next = self.writes.val() & !self.step.q.val().get_bit(0);
         self.low.write_address.next = bit_cast::<5, 3>(self.step.q.val().get_bits::<3>(1))
@@ -344,7 +344,7 @@ impl Logic for ResultBanks {
         self.out_data.d.next =
             bit_cast::<16, 8>(self.low_byte.val()) | (bit_cast::<16, 8>(self.high_byte.val()) << 8);
         self.cause.next = self.high_byte.val().get_bits::<4>(0);
-        // Causes 1 to 12 explain it; an alarm reported with an upset would hide it.
+        // Causes 1 to 12 explain it; an alarm reported with an upset would hide the upset.
         self.is_explained.next = self.cause.val().any()
             & !(self.cause.val().get_bits::<2>(2).all() & self.cause.val().get_bits::<2>(0).any());
         match self.shown.q.val().index() {

@@ -1,4 +1,4 @@
-//! Verdict bytes: the checks of a reply as the bytes that the processor reads.
+//! Verdict bytes: the checks of a reply as the processor's bytes.
 
 use crate::lowest_cause::LowestCause;
 use rtl_design::{kernel, Block};
@@ -11,9 +11,9 @@ pub struct VerdictBytes {
     pub good: Signal<In, Bit>,
     /// Raw flags, one bit for each fault; bits as in the register map.
     pub flags: Signal<In, Bits<16>>,
-    /// ID that the reply repeats.
+    /// ID echoed in the reply.
     pub reply_id: Signal<In, Bits<4>>,
-    /// There is a single-turn (bit 0) and a multi-turn position (bit 1).
+    /// A single-turn (bit 0) and a multi-turn position (bit 1) are available.
     pub valid: Signal<In, Bits<2>>,
     /// Low byte of address 1.
     pub control: Signal<Out, Bits<8>>,
@@ -26,7 +26,7 @@ pub struct VerdictBytes {
     primary: LowestCause,
     /// High if the encoder reports an error of the request.
     complains: Signal<Local, Bit>,
-    /// High if the reply repeats the ID of the request.
+    /// High if the reply echoes the ID of the request.
     repeats: Signal<Local, Bit>,
     /// Communication alarm: the high byte of address 6.
     alarms: Signal<Local, Bits<8>>,
@@ -44,7 +44,7 @@ impl Logic for VerdictBytes {
             | (bit_cast::<8, 1>(self.flags.val().get_bits::<1>(8)) << 6)
             | (bit_cast::<8, 1>(self.complains.val().into()) << 7);
         self.communication.next = self.alarms.val();
-        // Any flag up to the echo says that no ID came, or another one.
+        // Any flag up to the echo means that no ID, or another one, was received.
         self.repeats.next = !self.flags.val().get_bits::<6>(0).any();
         self.control.next = bit_cast::<8, 4>(self.reply_id.val())
             | (bit_cast::<8, 1>(self.repeats.val().into()) << 4)

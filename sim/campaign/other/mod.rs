@@ -1,5 +1,5 @@
-//! Ports of other protocols than EnDat in lanes: a frame in which a flip-flop is inverted, the line is disturbed or the encoder is wrong, and
-//! those that follow. Each lane triggers when it is idle and its time has come, as those of [`super::port`].
+//! Ports of other protocols than EnDat in lanes: a frame with an inverted flip-flop, a disturbed line or a faulty encoder, and
+//! the frames after it. Each lane triggers when it is idle and its time has come, as in [`super::port`].
 
 mod run;
 pub mod ssi;
@@ -17,10 +17,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 const LANES: usize = 128;
-/// Before the frame, for what is wrong already when it begins.
+/// Time before the frame, for faults that exist when it begins.
 const LEAD_US: u64 = 2;
 
-/// What a port is set to, and how long its frame takes.
+/// Settings of a port, and duration of its frame.
 #[derive(Clone)]
 pub struct Plan {
     /// Name of the port in tables.
@@ -29,13 +29,13 @@ pub struct Plan {
     pub kind: &'static str,
     system_mhz: u64,
     settings: &'static [(&'static str, u64)],
-    /// From one trigger to the next: the frame, and the line at rest.
+    /// Cycles from one trigger to the next: the frame, and the line at rest.
     span_cycles: u64,
-    /// The part of it in which a disturbance begins or ends.
+    /// Part of it in which a disturbance begins or ends.
     disturbed_cycles: u64,
-    /// When a disturbance that began in the frame is over: later than the longest recovery time.
+    /// End of a disturbance that began in the frame: after the longest recovery time.
     over_cycles: u64,
-    /// Longer than all that a port may wait for after an upset.
+    /// More than any wait of a port after an upset.
     hang_cycles: u64,
     /// A quarter of a bit.
     quarter_cycles: u64,
@@ -51,14 +51,14 @@ impl Plan {
 
 /// An encoder in a lane.
 pub trait Device: Clone + Send + Sync + 'static {
-    /// Pins that it hears, in the order of [`Self::hear`].
+    /// Input pins, in the order of [`Self::hear`].
     const PINS: &'static [&'static str];
-    /// Of these, the one that is the receiver's driver.
+    /// Index of the pin with the receiver's driver, if any.
     const DRIVER: Option<usize>;
-    /// How it may be wrong.
+    /// Kinds of encoder faults.
     const WAYS: &'static [&'static str];
 
-    /// The frames that the port is tried in.
+    /// The frames that are tried.
     fn plans() -> Vec<Plan>;
     /// The port.
     fn design() -> Result<Design, CampaignError>;
@@ -66,19 +66,19 @@ pub trait Device: Clone + Send + Sync + 'static {
     fn new(plan: &Plan) -> Self;
     /// The pins change.
     fn hear(&mut self, now: Time, pins: &[bool]);
-    /// It does what is due.
+    /// Processes due events.
     fn advance(&mut self, now: Time);
-    /// When it wants to act next.
+    /// Time of the next event.
     fn next_event(&self) -> Option<Time>;
     /// DATA, with the bias of the line.
     fn data(&self) -> bool;
-    /// It turns to the position of this round; gives the position as a result has it.
+    /// Sets the position of this round; returns it in the format of a result.
     fn turn(&mut self, round: u32) -> u64;
-    /// How much it has complained of.
+    /// Number of complaints.
     fn complaints(&self) -> usize;
-    /// It is wrong in this way, one of [`Self::WAYS`].
+    /// Applies a fault, one of [`Self::WAYS`].
     fn spoil(&mut self, way: usize, rng: &mut Rng);
-    /// It is right again.
+    /// Removes the fault.
     fn mend(&mut self);
 }
 
@@ -89,13 +89,13 @@ pub enum LineFault {
     StuckLow,
     /// DATA is HIGH.
     StuckHigh,
-    /// The plug is off: the encoder hears nothing, and DATA is HIGH.
+    /// The plug is off: the encoder receives nothing, and DATA is HIGH.
     PlugHigh,
-    /// The same with a bias that is LOW.
+    /// The plug is off, with a LOW bias.
     PlugLow,
     /// Any level in any cycle.
     Noise,
-    /// A pulse of up to 16 cycles now and then.
+    /// Occasional pulses of up to 16 cycles.
     Glitches,
 }
 
@@ -121,7 +121,7 @@ impl LineFault {
     }
 }
 
-/// Something that goes wrong in a frame; cycles count from the trigger, those of the line from [`LEAD_US`] before it.
+/// A fault in a frame; cycles count from the trigger, those of the line from [`LEAD_US`] before it.
 #[derive(Clone, Copy, Debug)]
 enum Mishap {
     Flip {
@@ -180,10 +180,10 @@ pub struct OtherUpsets<D: Device> {
 }
 
 impl<D: Device> OtherUpsets<D> {
-    /// Upsets of registers [that are asked for](super::upsets::is_asked).
+    /// Upsets of registers [selected by name](super::upsets::is_asked).
     ///
     /// # Errors
-    /// If the design cannot be made.
+    /// If the design cannot be elaborated.
     pub fn new(draw: Draw, seed: u64, only: &str) -> Result<Self, CampaignError> {
         let (digest, engine) = engine::<D>()?;
         let plans = D::plans().into_iter();
@@ -196,7 +196,7 @@ impl<D: Device> OtherUpsets<D> {
         })
     }
 
-    /// At random, an equal share of each kind of frame.
+    /// Random cases, an equal share of each kind of frame.
     fn draw(&self, group: usize) -> Draw {
         let count = self.frames.len() as u64;
         match self.draw {
@@ -248,10 +248,10 @@ impl<D: Device> Campaign for OtherUpsets<D> {
     }
 }
 
-/// What is wrong in a case of [`OtherFrames`]: its name, and the mishap.
+/// The fault of a case of [`OtherFrames`], with its name.
 type Draws = Arc<dyn Fn(&Plan, u64) -> (String, Mishap) + Send + Sync>;
 
-/// Frames with a mishap that the number of the case decides.
+/// Frames with a fault that depends on the number of the case.
 pub struct OtherFrames<D: Device> {
     frames: Vec<Ready<D>>,
     cases: Vec<u64>,
@@ -276,7 +276,7 @@ impl<D: Device> OtherFrames<D> {
     /// Faults of the line that begin or end at every `step`-th quarter of a bit.
     ///
     /// # Errors
-    /// If the design cannot be made.
+    /// If the design cannot be elaborated.
     pub fn faults(step: u64, seed: u64) -> Result<Self, CampaignError> {
         let moments = move |plan: &Plan| {
             let cycles = LEAD_US * plan.system_mhz + plan.disturbed_cycles;
@@ -306,10 +306,10 @@ impl<D: Device> OtherFrames<D> {
         Self::new(count, Arc::new(draws))
     }
 
-    /// So many spoilt frames: the encoder is wrong, the line is, or a setting changes.
+    /// `cases` corrupted frames: by the encoder, the line, or a changing setting.
     ///
     /// # Errors
-    /// If the design cannot be made.
+    /// If the design cannot be elaborated.
     pub fn garbage(cases: u64, seed: u64) -> Result<Self, CampaignError> {
         let draws = move |plan: &Plan, number: u64| {
             let what = hash(&format!("{} {}", plan.subject, plan.kind));
@@ -363,7 +363,7 @@ impl<D: Device> Campaign for OtherFrames<D> {
         for ((kind, _), outcome) in drawn.into_iter().zip(ready.run(&mishaps)) {
             let row = Row {
                 subject: format!("{} {}", plan.subject, plan.kind),
-                // Apart from those of EnDat's ports.
+                // Distinguishes these rows from those of EnDat's ports.
                 kind: format!("{}: {kind}", plan.subject),
                 place: "line without delay".into(),
                 class: String::new(),

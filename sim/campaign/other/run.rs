@@ -1,15 +1,15 @@
-//! One batch: the frame with the mishaps, one in each lane, and as many frames after it as it takes.
+//! One batch: the frame with the faults, one in each lane, and as many frames after it as needed.
 
 use super::{Device, LineFault, Mishap, Plan, LANES, LEAD_US};
 use crate::campaign::port::{Outcome, Reading};
 use crate::{rng::Rng, Time};
 use rtl_design::engine::{Lanes, PortId};
 
-/// The counter of time is free-running; only its bits that the port keeps are compared.
+/// The time counter is free-running; only its bits stored by the port are compared.
 const STAMP_MASK: u64 = 0xFFFF_FFFF;
-/// Rounds before the one with the mishap.
+/// Rounds before the one with the fault.
 const WARM_UP: u32 = 3;
-/// From power-up until a trigger is taken, in microseconds.
+/// From power-up until a trigger is accepted, in microseconds.
 const READY_US: u64 = 120;
 
 #[derive(Clone, Copy)]
@@ -35,18 +35,18 @@ struct Disturbance {
     from: u64,
     until: u64,
     rng: Rng,
-    /// Of glitches: the cycle up to which DATA is inverted.
+    /// For glitches: DATA is inverted up to this cycle.
     inverted: u64,
 }
 
-/// The ports in all lanes, an encoder at each.
+/// The ports in all lanes, with an encoder each.
 #[derive(Clone)]
 pub(super) struct Bench<D: Device> {
     engine: Lanes,
     devices: Vec<D>,
     due: Vec<Time>,
     data: [u64; 2],
-    /// Pins as the encoders know them.
+    /// Pins for the encoders.
     pins: Vec<[u64; 2]>,
     pin_ids: Vec<PortId>,
     ids: Ids,
@@ -54,7 +54,7 @@ pub(super) struct Bench<D: Device> {
     cycle_ps: Time,
     system_mhz: u64,
     bit_cycles: u64,
-    /// Lanes with a result since they were asked.
+    /// Lanes with a new result.
     results: [u64; 2],
     disturbances: Vec<Disturbance>,
     /// Lanes whose plug is off.
@@ -160,7 +160,7 @@ impl<D: Device> Bench<D> {
             seen[part] = seen[part] & !bit | if level { bit } else { 0 };
         }
         for (lane, (part, bit)) in (0..LANES).map(place).enumerate() {
-            // The plug is in again: the encoder hears what there is.
+            // The plug is in again: the encoder receives the present levels.
             if was_deaf[part] & !self.deaf[part] & bit != 0 {
                 let levels: Vec<bool> = self.pins.iter().map(|p| p[part] & bit != 0).collect();
                 let now = self.now();
@@ -171,7 +171,7 @@ impl<D: Device> Bench<D> {
         seen
     }
 
-    /// What the ports do to their lines.
+    /// Applies the outputs of the ports to their lines.
     fn take_pins(&mut self) {
         let now = self.now();
         for part in 0..2 {
@@ -194,7 +194,7 @@ impl<D: Device> Bench<D> {
         }
     }
 
-    /// An encoder does what is due.
+    /// Lets an encoder process its due events.
     fn act(&mut self, lane: usize) {
         let now = self.now();
         let device = &mut self.devices[lane];
@@ -225,7 +225,7 @@ impl<D: Device> Bench<D> {
     }
 }
 
-/// What has been seen of a lane.
+/// State of a lane.
 #[derive(Clone, Default)]
 struct Lane {
     outcome: Outcome,
@@ -233,16 +233,16 @@ struct Lane {
     begun: u64,
     complaints: usize,
     sent: u64,
-    /// Cycles in which the driver was on without a frame, in a row.
+    /// Consecutive cycles with the driver on and no frame.
     driven: u64,
     conflict: bool,
 }
 
-/// Lanes that are all about to begin the frame.
+/// Lanes that are about to begin the frame.
 pub(super) struct Ready<D: Device> {
     pub plan: Plan,
     bench: Bench<D>,
-    /// Positions of the rounds so far, as results have them.
+    /// Positions of the rounds so far, in the format of results.
     before: Vec<u64>,
     stamp_after: u64,
 }
@@ -268,7 +268,7 @@ impl<D: Device> Ready<D> {
         }
     }
 
-    /// Runs the frame with these mishaps, one in each lane.
+    /// Runs the frame with these faults, one in each lane.
     pub fn run(&self, mishaps: &[Mishap]) -> Vec<Outcome> {
         let mut bench = self.bench.clone();
         let is_line = |m: &Mishap| matches!(m, Mishap::Line { .. });
@@ -294,7 +294,7 @@ impl<D: Device> Ready<D> {
                 match mishaps[lane] {
                     Mishap::Flip { register, bit, .. } => {
                         bench.engine.flip(register, bit, lane);
-                        // A pin that it drives changes at once, up to the next clock edge.
+                        // A driven pin changes at once, until the next clock edge.
                         bench.take_pins();
                     }
                     Mishap::Setting { name, value, .. } => bench.set(name, lane, value),
@@ -330,7 +330,7 @@ impl<D: Device> Ready<D> {
         lanes.into_iter().map(|lane| lane.outcome).collect()
     }
 
-    /// The frame is over, and what was wrong in it.
+    /// Removes the fault after the frame.
     fn restore(&self, bench: &mut Bench<D>, lane: usize, mishap: &Mishap) {
         match mishap {
             Mishap::Encoder { .. } => {
@@ -380,7 +380,7 @@ impl<D: Device> Bench<D> {
     }
 }
 
-/// What is known before the frame begins at `start`; gives what comes later, with its cycle and lane.
+/// Applies faults before the frame begins at `start`; returns the later ones, with cycle and lane.
 fn prepare<D: Device>(bench: &mut Bench<D>, mishaps: &[Mishap], start: u64) -> Vec<(u64, usize)> {
     let mut order = vec![];
     let first = bench.cycle;
@@ -410,7 +410,7 @@ fn prepare<D: Device>(bench: &mut Bench<D>, mishaps: &[Mishap], start: u64) -> V
     order
 }
 
-/// The next frame of a lane.
+/// Begins the next frame of a lane.
 fn begin<D: Device>(bench: &mut Bench<D>, state: &mut Lane, lane: usize, triggers: &mut [u64; 2]) {
     state.round += 1;
     state.begun = bench.cycle;
@@ -419,7 +419,7 @@ fn begin<D: Device>(bench: &mut Bench<D>, state: &mut Lane, lane: usize, trigger
     triggers[part] |= bit;
 }
 
-/// A driver that is on although no frame is under way.
+/// Notes a driver that is on without a frame.
 fn note_driver<D: Device>(bench: &mut Bench<D>, lanes: &mut [Lane], running: &[usize]) {
     let Some(driver) = D::DRIVER else {
         return;

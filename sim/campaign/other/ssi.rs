@@ -1,4 +1,4 @@
-//! The SSI port of a card at its encoder: with one copy of the position, with two, and with special bits.
+//! The SSI port of a card with its encoder: with one copy of the position, with two, and with special bits.
 
 use super::{Device, Plan};
 use crate::campaign::CampaignError;
@@ -10,7 +10,7 @@ use endat_hdl::protocols::SsiSpec;
 use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 
-/// Its name in tables.
+/// Name in tables.
 pub const SUBJECT: &str = "ssi_port";
 /// Name of the port with special bits.
 pub const SUBJECT_SPECIAL: &str = "ssi_port_special";
@@ -21,7 +21,7 @@ const TM: Time = 12 * US;
 const RECOVERY_MAX_US: u64 = 20;
 const TWICE: &str = "position_twice";
 
-/// What a port is set to, with this kind of frame.
+/// Settings of a port, with this kind of frame.
 const fn settings(frame: u64) -> [(&'static str, u64); 6] {
     [
         ("period_cycles", PERIOD_CYCLES),
@@ -43,7 +43,7 @@ static CHANGES: [(&str, u64); 5] = [
     ("frame", 31),
 ];
 
-/// An encoder in a lane; `SPECIAL`: a power fail bit and a parity bit follow its position.
+/// An encoder in a lane; `SPECIAL` adds a power fail bit and a parity bit after the position.
 #[derive(Clone)]
 pub struct Ssi<const SPECIAL: bool> {
     encoder: Encoder,
@@ -51,7 +51,7 @@ pub struct Ssi<const SPECIAL: bool> {
 }
 
 impl<const SPECIAL: bool> Ssi<SPECIAL> {
-    /// What the port is made for.
+    /// Request for the port.
     fn asked() -> SsiSpec {
         let after: &[Special] = match SPECIAL {
             true => &[Special::PowerFail, Special::ParityEven],

@@ -1,4 +1,4 @@
-//! The T-format port of a card at its encoder: exchanges with request 3.
+//! The T-format port of a card with its encoder: exchanges with request 3.
 
 use super::{Device, Plan};
 use crate::campaign::CampaignError;
@@ -8,7 +8,7 @@ use endat_hdl::protocols::t_format::port::TFormatPort;
 use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 
-/// Its name in tables.
+/// Name in tables.
 pub const SUBJECT: &str = "t_format_port";
 const SYSTEM_MHZ: u64 = 20;
 const BIT_CYCLES: u64 = 8;
@@ -61,7 +61,7 @@ impl Device for TFormat {
             span_cycles: 80 * SYSTEM_MHZ,
             disturbed_cycles: 56 * SYSTEM_MHZ,
             over_cycles: 58 * SYSTEM_MHZ,
-            // A timer of 7 bits that counts round.
+            // A 7-bit timer that wraps.
             hang_cycles: 500 * SYSTEM_MHZ,
             quarter_cycles: BIT_CYCLES / 4,
             changes: &CHANGES,

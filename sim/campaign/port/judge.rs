@@ -1,30 +1,30 @@
-//! What became of one flip, from what the reader and the encoder saw in the frame and in those that follow.
+//! Classifies a flip by the observations of the reader and the encoder in the frame and in the following ones.
 
 use crate::encoder::{FrameLog, Violation};
 
 /// Triggers after which a port that has not given a good position counts as hung.
 pub const TRIGGERS_MAX: u32 = 8;
 
-/// What became of a case: the worst that was seen, each case in one class.
+/// Class of a case: the worst observation, one class for each case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Class {
     /// Every result is as without the upset.
     #[default]
     Masked,
-    /// A cause was told, or a position that is not fresh.
+    /// A cause was reported, or a position that is not fresh.
     Detected,
-    /// A trigger has no result, and no cause says so, with the next one neither.
+    /// A trigger has no result, and neither this nor the next result has a cause.
     Lost,
-    /// Good position, but time stamp, additional data or answer are wrong, without a cause.
+    /// Good position, but wrong time stamp, additional data or answer, without a cause.
     SilentOther,
-    /// A wrong position is told as good.
+    /// A wrong position is reported as good.
     Silent,
-    /// Busy for ever, or no good position in [`TRIGGERS_MAX`] triggers.
+    /// Busy forever, or no good position in [`TRIGGERS_MAX`] triggers.
     Hang,
 }
 
 impl Class {
-    /// All of them.
+    /// All classes.
     pub const ALL: [Self; 6] = [
         Self::Masked,
         Self::Detected,
@@ -34,7 +34,7 @@ impl Class {
         Self::Hang,
     ];
 
-    /// Its name in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Masked => "masked",
@@ -47,20 +47,20 @@ impl Class {
     }
 }
 
-/// What may be seen besides, in any class.
+/// Additional observations, in any class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mark {
     /// A wrong number of clock pulses, and no cause in that frame or the next.
     Pulses,
-    /// A whole frame more than the trigger needs, and no cause.
+    /// One frame more than the trigger needs, without a cause.
     Again,
-    /// Another rule of the encoder broken, and no cause.
+    /// Another violation of the encoder's rules, without a cause.
     Rules,
-    /// The driver is against the encoder's for more than a bit time after the frame.
+    /// The driver conflicts with the encoder's for more than a bit time after the frame.
     Conflict,
     /// The next frame is not good.
     Next,
-    /// With a cause: the position that is held is none that the encoder sent.
+    /// With a cause: the held position was never sent by the encoder.
     HeldWrong,
     /// The second trigger after the frame is the first of two good ones in a row.
     Triggers2,
@@ -68,16 +68,16 @@ pub enum Mark {
     Triggers3,
     /// A later one.
     TriggersMore,
-    /// Busy for longer than the timers allow, but not for ever.
+    /// Busy for longer than the timers allow, but not forever.
     Slow,
-    /// Of a card: its configuration is not what the host wrote, and nothing has said so.
+    /// For a card: its configuration differs from the written one, without a report.
     Config,
-    /// Of a card: the host had to open the connection anew.
+    /// For a card: the host had to reopen the connection.
     Reopened,
 }
 
 impl Mark {
-    /// All of them.
+    /// All marks.
     pub const ALL: [Self; 12] = [
         Self::Pulses,
         Self::Again,
@@ -93,7 +93,7 @@ impl Mark {
         Self::Reopened,
     ];
 
-    /// Its name in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pulses => "pulses",
@@ -112,26 +112,26 @@ impl Mark {
     }
 }
 
-/// What a reader sees between two triggers.
+/// Observations of a reader between two triggers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::campaign) struct Reading {
     /// A result has come since the trigger.
     pub has_result: bool,
-    /// Its cause, or the one that took its place; 0 = none.
+    /// Its cause, or the late one; 0 = none.
     pub cause: u64,
-    /// A request has not been answered, and its mailbox says so.
+    /// A request was not answered, and its mailbox reports it.
     pub is_refused: bool,
     /// Position and `fresh` with `valid`.
     pub position: u64,
     pub valid: bool,
     pub fresh: bool,
-    /// What the encoder sent in this frame; none = no frame.
+    /// Position that the encoder sent in this frame; `None` = no frame.
     pub sent: Option<u64>,
-    /// The position is one that the encoder has sent before.
+    /// The encoder has sent the position before.
     pub was_sent: bool,
     /// Time stamp, additional data and answer are right.
     pub others_right: bool,
-    /// What the encoder complains of, since the trigger.
+    /// Complaints of the encoder since the trigger.
     pub pulses: bool,
     pub again: bool,
     pub rules: bool,
@@ -147,7 +147,7 @@ impl Reading {
         self.valid && Some(self.position) == self.sent
     }
 
-    /// Nobody has been told of anything.
+    /// True if no fault was reported.
     fn is_silent(&self) -> bool {
         self.cause == 0 && !self.is_refused
     }
@@ -172,14 +172,14 @@ impl Reading {
 pub(in crate::campaign) struct Outcome {
     pub class: Class,
     found: [bool; Mark::ALL.len()],
-    /// The cause that was told first; 0 = none.
+    /// The first reported cause; 0 = none.
     pub cause: u64,
     rounds: u32,
     good_in_row: u32,
-    /// The last reading had such an error, without a cause.
+    /// The last reading had this error, without a cause.
     open_pulses: bool,
     open_rules: bool,
-    /// It had no result, without a cause.
+    /// The last reading had no result, without a cause.
     open_lost: bool,
 }
 
@@ -192,12 +192,12 @@ impl Outcome {
         Mark::ALL.into_iter().filter(|m| self.found[*m as usize])
     }
 
-    /// Whether nothing has been read so far.
+    /// True if nothing has been read so far.
     pub fn is_first(&self) -> bool {
         self.rounds == 0
     }
 
-    /// Takes a reading. Whether all has been seen: two good ones after the frame, or too many that are not.
+    /// Evaluates a reading. True when finished: two good ones after the frame, or too many bad ones.
     pub fn read(&mut self, reading: &Reading) -> bool {
         let is_silent = reading.is_silent();
         if is_silent && self.open_pulses {
@@ -258,7 +258,7 @@ impl Outcome {
         false
     }
 
-    /// It stays busy, or its results stay bad.
+    /// The port stays busy, or its results stay bad.
     pub fn hang(&mut self) {
         self.class = Class::Hang;
         self.close();
@@ -277,7 +277,7 @@ impl Outcome {
     }
 }
 
-/// Whether the encoder saw another number of pulses than there should be.
+/// True if the encoder received a wrong number of pulses.
 pub fn is_count(violation: &Violation) -> bool {
     matches!(
         violation,
@@ -288,12 +288,12 @@ pub fn is_count(violation: &Violation) -> bool {
     )
 }
 
-/// Whether each of these frames has all its pulses.
+/// True if each of these frames has all its pulses.
 pub(super) fn are_whole(frames: &[FrameLog]) -> bool {
     frames.iter().all(FrameLog::is_whole)
 }
 
-/// Whether a trigger needs no more than these: none, or one at the full clock with those before it that measured the delay.
+/// True if a trigger needs these frames: none, or one at the full clock with the measuring ones before it.
 pub(super) fn are_needed(frames: &[FrameLog]) -> bool {
     (frames.split_last()).is_none_or(|(last, before)| before.iter().all(|f| f.measures_for(last)))
 }
@@ -323,7 +323,7 @@ mod tests {
         (outcome.class, outcome.marks().collect())
     }
 
-    /// The frame with the mishap, and two good ones behind it.
+    /// The frame with the fault, and two good ones after it.
     fn first(change: impl Fn(&mut Reading)) -> (Class, Vec<Mark>) {
         let mut reading = good();
         change(&mut reading);
@@ -335,7 +335,7 @@ mod tests {
         assert_eq!(first(|_| {}), (Class::Masked, vec![]));
         let wrong = |r: &mut Reading| r.position = 8;
         assert_eq!(first(wrong), (Class::Silent, vec![]));
-        // With a cause it is told, but it is held.
+        // It is reported with a cause, but held.
         let told = |r: &mut Reading| (r.position, r.cause) = (8, 7);
         assert_eq!(first(told), (Class::Detected, vec![Mark::HeldWrong]));
         let held = |r: &mut Reading| {
@@ -344,7 +344,7 @@ mod tests {
         assert_eq!(first(held), (Class::Detected, vec![]));
         assert_eq!(first(|r| r.others_right = false).0, Class::SilentOther);
         assert_eq!(first(|r| r.fresh = false).0, Class::Detected);
-        // Not fresh, and not what it was.
+        // Neither fresh nor the previous position.
         let spoilt = |r: &mut Reading| (r.position, r.fresh) = (8, false);
         assert_eq!(first(spoilt).0, Class::Silent);
         assert_eq!(first(|r| r.has_result = false).0, Class::Lost);

@@ -1,7 +1,7 @@
-//! Ports in lanes: all the same up to one frame, in which each has a mishap of its own, and on from there.
+//! Ports in lanes: all equal up to one frame, in which each has another fault, and the frames after it.
 //!
-//! Each lane triggers when it is idle and its time has come, so no case depends on those beside it. The result is read just before the
-//! next trigger, as a host does that reads late.
+//! Each lane triggers when it is idle and its time has come, so no case depends on other lanes. The result is read just before the
+//! next trigger, as by a slow host.
 
 mod judge;
 mod run;
@@ -27,19 +27,19 @@ use std::sync::{Mutex, PoisonError};
 const SYSTEM_HZ: u64 = 32_000_000;
 const ENDAT_HZ: u64 = 4_000_000;
 const BIT: Time = 250 * NS;
-/// Before the frame, for what is wrong already when it begins.
+/// Time before the frame, for faults that exist when it begins.
 const LEAD: Time = 2 * US;
 const LANES: usize = 128;
 /// Longest answer to a command with a parameter.
 const PARAMETER_TIMEOUT_US: u64 = 200;
-/// What a port may take for a frame, its time-outs and its quiet time.
+/// Longest time of a port for a frame, its time-outs and its quiet time.
 const SLOW_US: u64 = 4_000;
-/// What a timer takes that has been taken past its limit, and what follows it: 2^16 microseconds.
+/// Longest time of a timer upset past its limit, and of the following actions: 2^16 microseconds.
 const HANG_US: u64 = 72_000;
 /// The line and the encoder of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
-    /// Recovery time of the encoder; none = a short one that is legal for the command.
+    /// Recovery time of the encoder; `None` = a short one that is legal for the command.
     pub tm: Option<Time>,
     /// Cable in metres.
     pub cable_m: f64,
@@ -57,48 +57,48 @@ impl Default for Conditions {
     }
 }
 
-/// Something that goes wrong in a frame.
+/// A fault in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mishap {
     /// A flip-flop is inverted.
     Flip {
         /// Index of its register's output.
         register: usize,
-        /// Which bit.
+        /// Bit of the register.
         bit: usize,
         /// System clock cycles after the trigger.
         cycle: u64,
     },
-    /// A fault of the line, from one moment to another; times count from [`LEAD_PS`] before the trigger.
+    /// A fault of the line during a time span; times count from [`LEAD_PS`] before the trigger.
     Fault {
-        /// Which.
+        /// Kind of fault.
         kind: FaultKind,
-        /// It begins.
+        /// Start.
         from: Time,
-        /// It ends.
+        /// End.
         until: Time,
-        /// Of what is random.
+        /// Seed of its random values.
         seed: u64,
     },
     /// The encoder's answer is wrong.
     Answer(Defect, u64),
     /// Edges vary in this frame.
     Jitter(Jitter, u64),
-    /// An input that configures the port has another value from a cycle on, to the end of the frame.
+    /// A configuration input of the port has another value from a cycle on, to the end of the frame.
     Setting {
-        /// Which.
+        /// Input.
         name: &'static str,
-        /// Its value.
+        /// Value.
         value: u128,
         /// System clock cycles after the trigger.
         cycle: u64,
     },
 }
 
-/// From the moment from which the times of a line fault count, to the trigger.
+/// Time from the origin of line fault times to the trigger.
 pub const LEAD_PS: Time = LEAD;
 
-/// Positions of a continuous run in which a flip falls.
+/// Number of positions of a continuous run in which a flip may occur.
 const RUN_FRAMES: u64 = 3;
 
 /// A port whose flip-flops are inverted.
@@ -106,17 +106,17 @@ const RUN_FRAMES: u64 = 3;
 pub enum Port {
     /// Triggered positions only.
     Position,
-    /// All parts: requests, diagnosis, continuous clock, alignment.
+    /// All features: requests, diagnosis, continuous clock, alignment.
     AllParts,
     /// Alignment and double edge.
     DoubleEdge,
-    /// All parts, and a second receiver.
+    /// All features, and a second receiver.
     SecondReceiver,
     /// Triggered positions only, without guards against upsets.
     Unguarded,
 }
 
-/// The frame in which it is done.
+/// The frame with the fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameKind {
     /// At the calibration clock.
@@ -129,14 +129,14 @@ pub enum FrameKind {
     AdditionalData,
     /// 001001: additional data 1 and 2 and a supplement.
     Supplement,
-    /// 001110, in a frame of its own.
+    /// 001110, in a separate frame.
     Request,
     /// A run with 000111.
     Continuous,
 }
 
 impl FrameKind {
-    /// Its name in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Calibration => "calibration",
@@ -149,7 +149,7 @@ impl FrameKind {
         }
     }
 
-    /// What its cases are drawn by. It stays when the name becomes another one, so that counted results stay those of the same cases.
+    /// Label for the random numbers of its cases. It does not change with the name, so that counted results belong to the same cases.
     pub(super) fn drawn_by(self) -> &'static str {
         match self {
             Self::AdditionalData => "informations",
@@ -166,16 +166,16 @@ impl FrameKind {
 }
 
 impl Port {
-    /// Those of the committed campaigns.
+    /// Ports of the committed campaigns.
     pub const ALL: [Self; 3] = [Self::Position, Self::AllParts, Self::DoubleEdge];
 
-    /// Those that may be asked for by name: these, one with a second receiver, and one without guards.
+    /// Ports that can be selected by name: these, one with a second receiver, and one without guards.
     pub fn named() -> impl Iterator<Item = Self> {
         let others = [Self::SecondReceiver, Self::Unguarded];
         Self::ALL.into_iter().chain(others)
     }
 
-    /// Its name in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Position => "port",
@@ -186,7 +186,7 @@ impl Port {
         }
     }
 
-    /// The frames that it can send.
+    /// The frames that it supports.
     pub fn kinds(self) -> &'static [FrameKind] {
         use FrameKind::*;
         match self {
@@ -231,7 +231,7 @@ impl Port {
     /// Its design.
     ///
     /// # Errors
-    /// If it cannot be elaborated: a fault of this program.
+    /// If it cannot be elaborated: a bug in this program.
     pub fn design(self) -> Result<Design, CampaignError> {
         let times = FixedTimes {
             abort_us: ABORT_US,
@@ -243,7 +243,7 @@ impl Port {
         Ok(elaborate(&block, "channel")?)
     }
 
-    /// The port in native code, after reset. A process compiles each port once.
+    /// The port in native code, after reset. Each process compiles each port once.
     pub(in crate::campaign) fn engine(self) -> Result<Lanes, CampaignError> {
         static ENGINES: Mutex<Vec<(Port, Lanes)>> = Mutex::new(Vec::new());
         let lock = || ENGINES.lock().unwrap_or_else(PoisonError::into_inner);
@@ -260,7 +260,7 @@ fn cycles(us: u64) -> u64 {
     us * (SYSTEM_HZ / 1_000_000)
 }
 
-/// Outputs that a reader looks at.
+/// Outputs for the reader.
 #[derive(Clone)]
 struct Outputs {
     position: PortId,
@@ -268,21 +268,21 @@ struct Outputs {
     fresh: PortId,
     cause: PortId,
     stamp: PortId,
-    /// With requests: additional data 1 and 2, which are good; answer, whether it is, and what became of its frame.
+    /// With requests: additional data 1 and 2 with their validity; answer, its validity, and the outcome of its frame.
     infos: [PortId; 3],
     reply: [PortId; 3],
 }
 
-/// Lanes that are all about to begin the frame.
+/// Lanes that are about to begin the frame.
 pub(in crate::campaign) struct Ready {
     pub port: Port,
     pub kind: FrameKind,
     settings: ChannelSettings,
-    /// From the trigger to the next one.
+    /// Cycles from a trigger to the next.
     pub span_cycles: u64,
     bench: LaneBench,
     outputs: Outputs,
-    /// From the trigger's cycle to the time stamp.
+    /// Cycles from the trigger to the time stamp.
     stamp_after: u64,
 }
 
@@ -338,7 +338,7 @@ impl Ready {
         ready
     }
 
-    /// Everything up to the frame: delay measured, additional data selected, the run begun.
+    /// Everything up to the frame: measures the delay, selects additional data, starts the run.
     fn prepare(&mut self) {
         let bench = &mut self.bench;
         // With alignment several frames measure.
@@ -409,7 +409,7 @@ impl Ready {
     }
 }
 
-/// The frame that is upset begins, in all lanes.
+/// Begins the frame with the fault in all lanes.
 fn begin(bench: &mut LaneBench, kind: FrameKind) {
     match kind {
         FrameKind::Continuous => {}
@@ -427,7 +427,7 @@ fn trigger_all(bench: &mut LaneBench) {
     }
 }
 
-/// A request in all lanes.
+/// Sends a request in all lanes.
 fn put(bench: &mut LaneBench, command: ModeCommand, address: u8, strobe: &str) {
     bench.set_all("request_command", command.code().into());
     bench.set_all("request_parameter", u128::from(address) << 16);
@@ -437,7 +437,7 @@ fn put(bench: &mut LaneBench, command: ModeCommand, address: u8, strobe: &str) {
     (0..4).for_each(|_| bench.tick());
 }
 
-/// Until no lane is busy.
+/// Runs until no lane is busy.
 fn settle(bench: &mut LaneBench) {
     (0..4).for_each(|_| bench.tick());
     let end = bench.cycle() + cycles(SLOW_US);

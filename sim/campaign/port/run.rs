@@ -1,4 +1,4 @@
-//! One batch: the frame with the mishaps, one in each lane, and as many frames after it as it takes.
+//! One batch: the frame with the faults, one in each lane, and as many frames after it as needed.
 
 use super::judge::{are_needed, are_whole, is_count, Mark, Outcome, Reading};
 use super::{begin, cycles, FrameKind, Mishap, Ready, BIT, HANG_US, LEAD, SLOW_US, SYSTEM_HZ};
@@ -14,7 +14,7 @@ const PER_SECOND: u64 = 1_000_000 * US;
 const LEAD_CYCLES: u64 = LEAD * (SYSTEM_HZ / 1_000_000) / US;
 
 impl Mishap {
-    /// When it comes, if the bench has to bring it about.
+    /// Cycle in which the bench applies it, if it has to.
     fn cycle(&self) -> Option<u64> {
         match self {
             Self::Flip { cycle, .. } | Self::Setting { cycle, .. } => Some(*cycle),
@@ -23,7 +23,7 @@ impl Mishap {
     }
 }
 
-/// What has been seen of a lane.
+/// State of a lane.
 #[derive(Clone, Debug, Default)]
 struct Lane {
     outcome: Outcome,
@@ -36,7 +36,7 @@ struct Lane {
 }
 
 impl Ready {
-    /// Runs the frame with these mishaps, one in each lane.
+    /// Runs the frame with these faults, one in each lane.
     pub fn run(&self, mishaps: &[Mishap]) -> Vec<Outcome> {
         let mut run = self.start(mishaps);
         run.all();
@@ -65,7 +65,7 @@ impl Ready {
         }
     }
 
-    /// The same of the frame alone: what the reader was told, and the answer that the encoder sent.
+    /// Runs only the frame: returns the reports to the reader, and the answer of the encoder.
     pub fn answers(&self, mishaps: &[Mishap]) -> Vec<Told> {
         let mut run = self.start(mishaps);
         run.is_alone = true;
@@ -85,28 +85,28 @@ impl Ready {
     }
 }
 
-/// What became of one frame.
+/// Outcome of one frame.
 pub(in crate::campaign) struct Told {
-    /// The position, if it is told as good.
+    /// The position, if reported as good.
     pub position: Option<u64>,
     /// Start bit to the last bit of the CRC.
     pub answer: Vec<bool>,
 }
 
-/// A batch on its way.
+/// A running batch.
 struct Run<'a> {
     ready: &'a Ready,
     bench: LaneBench,
     lanes: Vec<Lane>,
-    /// Lanes whose time has come, as soon as they are idle.
+    /// Lanes whose time has come, waiting to become idle.
     waiting: [u64; 2],
-    /// Lanes of which not all has been seen.
+    /// Unfinished lanes.
     running: [u64; 2],
     busy: [u64; 2],
-    /// When the time of the next lane comes.
+    /// Time of the next lane.
     next_due: u64,
     mishaps: &'a [Mishap],
-    /// Only the frame is looked at.
+    /// Only the frame is evaluated.
     is_alone: bool,
 }
 
@@ -129,7 +129,7 @@ impl Run<'_> {
             .collect();
         order.sort_unstable();
         let mut next = order.into_iter().peekable();
-        // What begins the frame takes a few cycles; what falls into them comes right after.
+        // Starting the frame takes a few cycles; faults during these are applied right after.
         begin(&mut self.bench, self.ready.kind);
         self.busy = [0, 1].map(|part| self.bench.busy(part));
         while self.running != [0, 0] {
@@ -149,7 +149,7 @@ impl Run<'_> {
         }
     }
 
-    /// What is known before the frame begins.
+    /// Applies faults before the frame begins.
     fn prepare(&mut self, lane: usize, mishap: &Mishap) {
         let now = self.bench.now();
         let reseed = |link: &mut Link, seed: u64| link.encoder_mut().reseed(seed);
@@ -179,7 +179,7 @@ impl Run<'_> {
         });
     }
 
-    /// What lasts as long as the frame is over.
+    /// Removes faults after the frame.
     fn restore(&mut self, lane: usize) {
         if let Mishap::Setting { name, .. } = &self.mishaps[lane] {
             let before = self
@@ -205,7 +205,7 @@ impl Run<'_> {
         }
     }
 
-    /// Reads the lanes that are idle when their time has come, and triggers them again.
+    /// Reads the idle lanes when their time has come, and triggers them again.
     fn time_passes(&mut self, cycle: u64) {
         if cycle >= self.next_due {
             self.next_due = u64::MAX;
@@ -252,14 +252,14 @@ impl Run<'_> {
         }
     }
 
-    /// A continuous run ends when it is asked to.
+    /// Ends a continuous run on request.
     fn leave_run(&mut self, lane: usize) {
         if self.ready.kind == FrameKind::Continuous {
             self.bench.set("continuous", lane, 0);
         }
     }
 
-    /// Reads a lane; whether all has been seen.
+    /// Reads a lane; true if it is finished.
     fn read(&mut self, index: usize) -> bool {
         let reading = self.reading(index);
         let cycle = self.bench.cycle();
@@ -305,14 +305,14 @@ impl Run<'_> {
             r.last_cause() == 0 && r.fresh && !latest.contains(&r.position)
         };
         let sent = match (is_run, is_request) {
-            // The last of the run; a wrong one before it is as bad.
+            // The last position of the run; a wrong one before it is as bad.
             (true, _) if results.iter().any(told_wrong) => None,
             (true, _) => {
                 let latest = &all[all.len().saturating_sub(3)..];
                 let matching = latest.iter().find(|f| f.position == position);
                 matching.or(all.last()).map(|f| f.position)
             }
-            // No result of its own: the position before it stays.
+            // Without a new result the previous position remains.
             (_, true) => all[..lane.frames].last().map(|f| f.position),
             _ => frames.last().map(|f| f.position),
         };
@@ -361,7 +361,7 @@ impl Run<'_> {
             others_right,
             pulses: counts || !is_run && !are_whole(frames),
             again: !is_run && !are_needed(frames),
-            // Jitter makes pulses that the encoder does not like; the port does not.
+            // Jitter makes pulses that violate the encoder's rules without an error of the port.
             rules: !is_jitter && violations.iter().any(|v| !is_count(&v.1)),
             conflict: conflicts.iter().any(outlasts),
         }

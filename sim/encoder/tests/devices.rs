@@ -1,8 +1,8 @@
-//! Real devices: what a receiver finds in their memory.
+//! Memory content of real devices, as read by a receiver.
 
 use super::*;
 
-/// A word as a receiver reads it at 200 kHz.
+/// Reads a word at 200 kHz.
 fn read(m: &mut Master, word: u8) -> u16 {
     let (mrs, address) = match word {
         0..16 => (0xA1, word),
@@ -63,7 +63,7 @@ fn identity_words_are_laid_out_as_described() {
     config.tcal = 4_550 * NS;
     let mut m = Master::new(config, 1_000_000);
     let words: Vec<u16> = (24..30).map(|word| read(&mut m, word)).collect();
-    // Word 27 ends and word 29 begins with a letter; the number lies between them, high byte first.
+    // Word 27 ends and word 29 begins with a letter; the number is between them, high byte first.
     assert_eq!(words, [0x4944, 0x5678, 0x1234, 0x9A41, 0xBCDE, 0x5AF0]);
     assert_eq!([read(&mut m, 35), read(&mut m, 36)], [0x0055, 0x0011]);
     assert_eq!([read(&mut m, 8), read(&mut m, 39)], [2, 5]);

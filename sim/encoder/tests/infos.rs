@@ -1,4 +1,4 @@
-//! Which additional data come, in which order, and what they say.
+//! Selection, order and content of the additional data.
 
 use super::*;
 
@@ -17,7 +17,7 @@ fn none_is_sent_until_one_is_selected() {
     let mut m = master();
     assert_eq!(sent(&mut m), []);
     assert_eq!(m.last().rising_edges, 11 + 21);
-    // The frame that selects is still without.
+    // The frame with the selection has no additional data yet.
     assert_eq!(m.position22(SELECT_22, 0x40, 0), []);
     m.infos = 1;
     assert_eq!(sent(&mut m), [(0x00, 0)]);
@@ -73,7 +73,7 @@ fn what_the_encoder_does_not_have_is_refused() {
     m.select(0x4C, 1);
     m.select(0x4D, 1);
     assert_eq!(m.last().refused, Some(ErrorSource::InfoNotSupported));
-    assert_eq!(sent(&mut m), [(0x0C, 2954)], "the old one stays");
+    assert_eq!(sent(&mut m), [(0x0C, 2954)], "the old one remains");
     m.select(0x5A, 1); // not assigned
     assert_eq!(m.last().refused, Some(ErrorSource::InfoNotSupported));
     m.select(0x59, 2);
@@ -124,7 +124,7 @@ fn parts_of_a_position_belong_together() {
         config.values.asynchronous_offset = offset;
         let mut m = Master::new(config, 2_000_000);
         m.select(first, 1);
-        // The frame that asks for the second part is the last one with the first part.
+        // The frame that requests the second part is the last one with the first part.
         let low = m.position22(SELECT_22, first + 1, 0)[0].data;
         let taken = m.last().position;
         let middle = m.position22(SELECT_22, first + 2, 0)[0].data;
@@ -199,7 +199,7 @@ fn an_alarm_sets_both_error_bits_in_opposite_senses() {
     config.causes[0].warnings = 0b100;
     let mut m = Master::new(config, 2_000_000);
     m.wait(3 * MS);
-    m.position22(POSITION_22, 0, 0); // an alarm that it cannot tell
+    m.position22(POSITION_22, 0, 0); // an alarm that it cannot report
     assert_eq!(m.encoder.word(area::OPERATING_STATUS, 0), Some(0));
     assert_eq!(m.encoder.word(area::OPERATING_STATUS, 1), Some(0));
 }

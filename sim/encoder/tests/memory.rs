@@ -1,4 +1,4 @@
-//! Memory areas, protection and the time that accesses take.
+//! Memory areas, protection and access times.
 
 use super::*;
 
@@ -19,7 +19,7 @@ fn write(m: &mut Master, mrs: u8, address: u8, data: u16) -> Option<u16> {
     echo.map(|p| p.data)
 }
 
-/// Reads with EnDat 2.2 commands, while positions go on.
+/// Reads with EnDat 2.2 commands, while positions continue.
 fn read_22(m: &mut Master, mrs: u8, address: u8) -> u16 {
     let before = m.infos;
     m.position22(SELECT_22, mrs, 0);
@@ -98,7 +98,7 @@ fn the_manufacturers_words_are_protected() {
     for (mrs, address) in [(0xA1, 13), (0xA3, 1), (0xA5, 5), (0xBD, 25)] {
         let word = m.encoder.word(mrs, address).unwrap();
         let echo = write(&mut m, mrs, address, !word);
-        assert_eq!(echo, Some(word), "the echo tells what is stored");
+        assert_eq!(echo, Some(word), "the echo has the stored word");
         let frames = m.encoder.frames();
         let refused = frames.iter().rev().find_map(|f| f.refused);
         assert_eq!(refused, Some(ErrorSource::Protected));
@@ -191,7 +191,7 @@ fn nothing_else_is_accessed_while_busy() {
         let frames = m.encoder.frames();
         assert_eq!(frames.last().unwrap().refused, Some(ErrorSource::Address));
     }
-    m.select(0x4C, 1); // additional data are no memory
+    m.select(0x4C, 1); // additional data are not memory
     assert_eq!(m.last().refused, None);
     m.wait(13 * MS);
     assert_eq!(m.encoder.word(0xA7, 0x0E), Some(0), "not yet seen");
@@ -294,7 +294,7 @@ fn the_datum_shift_moves_the_position() {
     let mut m = Master::new(config, 2_000_000);
     write(&mut m, 0xA7, 0, 0xFFFE);
     m.position22(POSITION_22, 0, 0);
-    assert_eq!(m.last().position, 0x1_1232, "word 0 is the low one");
+    assert_eq!(m.last().position, 0x1_1232, "word 0 is the low word");
     write(&mut m, 0xA7, 1, 0xFFFF);
     m.position22(POSITION_22, 0, 0);
     assert_eq!(m.last().position, 0x1232, "the shift is signed");

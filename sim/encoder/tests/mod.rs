@@ -16,7 +16,7 @@ use crate::{
     MS, NS, US,
 };
 
-/// An ideal receiver right at the encoder.
+/// An ideal receiver directly at the encoder.
 struct Master {
     encoder: Encoder,
     now: Time,
@@ -27,7 +27,7 @@ struct Master {
     zeros: u32,
     /// Additional data that it expects.
     infos: u32,
-    /// Outputs of the encoder, with the moments of their changes.
+    /// Outputs of the encoder, with the times of their changes.
     outputs: Vec<(Time, Output)>,
 }
 
@@ -74,7 +74,7 @@ impl Master {
         }
     }
 
-    /// The same with a parameter behind the mode command.
+    /// The drive with a parameter after the mode command.
     fn parameter_bit(command: u8, fields: Parameter, rise: u32) -> Drive {
         match rise {
             9..=32 => Drive::level(fields.word() >> (32 - rise) & 1 != 0),
@@ -82,7 +82,7 @@ impl Master {
         }
     }
 
-    /// One pulse, LOW for `low`, and what is on the line just before the next falling edge.
+    /// One pulse, LOW for `low`; returns the line just before the next falling edge.
     fn pulse(&mut self, data: Drive, low: Time) -> Output {
         self.edge(false, data);
         self.wait(low);
@@ -110,8 +110,8 @@ impl Master {
             .collect()
     }
 
-    /// A whole exchange: `fields` go behind the mode command or into the supplement. Returns the answer from the start bit on, or
-    /// nothing after 20 ms without one.
+    /// A whole exchange: `fields` follow the mode command or are in the supplement. Returns the answer from the start bit on, or
+    /// `None` after 20 ms without one.
     fn exchange(&mut self, code: u8, fields: Parameter) -> Option<Vec<bool>> {
         let command = Command::ALL.iter().find(|c| c.0 == code).unwrap().1;
         let (data, sent): (Box<dyn Fn(u32) -> Drive>, u32) = if command.has_parameter() {
@@ -152,7 +152,7 @@ impl Master {
         Some(bits)
     }
 
-    /// Parks the clock LOW and sends a supplement. The bits seen are those before each falling edge from `F'1` on.
+    /// Parks the clock LOW and sends a supplement. Returns the bits before each falling edge from `F'1` on.
     fn supplement(&mut self, fields: Parameter, block: Option<u8>) -> Vec<Output> {
         let mut bits = vec![false; self.zeros as usize];
         bits.push(true);
@@ -202,7 +202,7 @@ impl Master {
         [bits[1], bits[2]]
     }
 
-    /// Selects additional data, and tells how many blocks come from now on.
+    /// Selects additional data; `infos` is the number of blocks from now on.
     fn select(&mut self, code: u8, infos: u32) {
         self.position22(SELECT_22, code, 0);
         self.infos = infos;
@@ -241,7 +241,7 @@ const ERROR_RESET: u8 = 0b101_101;
 const TEST_22: u8 = 0b110_110;
 const COMMUNICATION: u8 = 0b010_010;
 
-/// 13 bits, so that frames are short; memory that answers at once.
+/// 13 bits, so that frames are short; memory without access time.
 fn quick() -> EncoderConfig {
     let mut config = EncoderConfig::endat22(13).position(PositionSource::Fixed(0x1234));
     (config.tac, config.tcal) = (0..=0, 2 * US);

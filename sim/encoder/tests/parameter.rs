@@ -60,7 +60,7 @@ fn the_clock_runs_while_the_memory_is_accessed() {
     let mut m = Master::new(config, 1_000_000);
     let begin = m.now;
     assert!(m.ask(SELECT, 0xA1, 0).is_some());
-    // The last bit is taken at R#32, 31.5 us after F#1; the answer begins at the first edge 12 ms later.
+    // The last bit is sampled at R#32, 31.5 us after F#1; the answer begins at the first edge 12 ms later.
     assert_eq!(m.last().start_time - begin, 12 * MS + 31_500 * NS);
     assert_eq!(m.last().start_edge, Some(12_032));
     assert_eq!(m.last().rising_edges, 12_062);
@@ -115,7 +115,7 @@ fn old_encoders_need_a_pause_between_parameter_commands() {
         m.ask(SELECT, 0xA1, 0);
         let end = m.last().last_rise;
         m.wait(50 * US);
-        m.exchange(POSITION_21, Parameter::default()); // may come at any time
+        m.exchange(POSITION_21, Parameter::default()); // allowed at any time
         m.wait(end + wait - m.now);
         m.ask(READ, 13, 0);
         m.violations()
@@ -157,7 +157,7 @@ fn test_values_are_forty_bits_behind_f1() {
     assert_eq!(fields_of_bits, ["S", "F1", "D0", "D39", "C4", "C0"]);
     m.wait(200 * US);
     let bits = m.exchange(TEST_VALUES, Parameter::default()).unwrap();
-    assert!(bits[1], "F1 tells the alarm here too");
+    assert!(bits[1], "F1 reports the alarm here, too");
     assert_eq!(m.violations(), []);
 }
 

@@ -193,7 +193,7 @@ fn a_write_that_loses_its_supply_leaves_the_old_word() {
 fn a_plugged_in_encoder_needs_its_start_up_time() {
     let mut config = quick();
     config.start_up = 300 * US;
-    // The second pull comes while it still starts.
+    // The second pull comes during the start-up.
     config.unplugged = vec![100 * US..200 * US, 400 * US..500 * US];
     let m = |until: Time| {
         let mut m = Master::new(config.clone(), 2_000_000);
@@ -209,7 +209,7 @@ fn a_plugged_in_encoder_needs_its_start_up_time() {
     assert_eq!(seen, [Symbol::Idle, Symbol::Absent, Symbol::Idle]);
     plugged.position22(POSITION_22, 0, 0);
     assert_eq!(plugged.violations(), []);
-    // Plugged in while the clock runs: deaf until the clock has been HIGH for long.
+    // Plugged in while the clock runs: ignores it until the clock has been HIGH for long.
     let mut m = m(794_900 * NS); // so that the clock is LOW at that moment
     let seen = m.pulses(POSITION_22, 250 * NS, 40);
     assert!(seen.iter().all(|o| o.symbol != Symbol::Bit(0)));

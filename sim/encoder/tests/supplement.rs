@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Pulses of a 13-bit frame before its last bit has been launched: 10 to the start bit, 21 bits.
+/// Pulses of a 13-bit frame before its last bit is launched: 10 to the start bit, 21 bits.
 const TO_LAST_BIT: u32 = 31;
 
 fn with_supplement(change: impl Fn(&mut Master)) -> (Master, Vec<Output>) {
@@ -29,8 +29,8 @@ fn a_supplement_follows_the_drawing() {
         assert!(seen[..33].iter().all(|o| o.drive == Drive::Released));
         assert_eq!((seen[33].drive, seen[34].drive), (Drive::High, Drive::High));
         let released = m.drives(Symbol::Listening);
-        assert_eq!(released - park, 500 * NS, "the last bit stays until then");
-        // F'33 is two periods before the last rising edge, less half a one.
+        assert_eq!(released - park, 500 * NS, "the last bit remains until then");
+        // F'33 is two periods before the last rising edge, minus half a period.
         let low = m.drives(Symbol::Lead);
         assert_eq!(last_rise - low, 1_500 * NS - 50 * NS);
         let high = m.drives(Symbol::Tail);

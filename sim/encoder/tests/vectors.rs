@@ -1,4 +1,4 @@
-//! Frames of the published CRC vectors, from a real encoder among others, as this encoder sends them.
+//! Frames with the published CRC vectors, including vectors of a real encoder, as sent by this encoder.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Pulses on DATA that are shorter than the filter: nowhere in a frame do they change anything.
+//! Pulses on DATA shorter than the filter have no effect anywhere in a frame.
 
 use super::{count, engine, run, Count, Kind};
 use endat_sim::{
@@ -25,7 +25,7 @@ fn quiet(kind: Kind) -> (Case, Time, Time) {
     )
 }
 
-/// A glitch of this width at every third of a cycle of the last frame, each in a channel of its own; of those every `step`th.
+/// A glitch of this width at every third of a cycle of the last frame, each in a separate channel; every `step`th of them.
 fn with_glitches(kind: Kind, width: f64, step: usize) -> Vec<Case> {
     let (case, from, until) = quiet(kind);
     let cycle = 1e12 / case.system_hz as f64;
@@ -45,10 +45,10 @@ fn with_glitches(kind: Kind, width: f64, step: usize) -> Vec<Case> {
 /// Both inputs.
 const KINDS: [Kind; 2] = [Kind::single(16), Kind::double(16)];
 
-/// A part of the places for the quick tests: every third of a cycle at other places of a bit.
+/// Step of the quick tests: every third of a cycle occurs, at other places of a bit.
 const SOME: usize = 59;
 
-/// Runs glitches of these widths side by side. Gives a result for each width.
+/// Runs glitches of these widths in parallel. Returns a result for each width.
 fn of_widths(kind: Kind, widths: &[f64], step: usize) -> Vec<Vec<Count>> {
     let cases: Vec<Vec<Case>> = (widths.iter())
         .map(|width| with_glitches(kind, *width, step))
@@ -74,7 +74,7 @@ fn filter(kinds: &[Kind], step: usize) {
             let harmed = counts.iter().position(is_harmed);
             assert_eq!(harmed, None, "{kind:?} {width}");
         }
-        // Longer ones do harm, so the sweep above means something; they are reported, but for what CRC5 cannot see.
+        // Longer pulses do harm, which validates the sweep above. They are reported, except those that CRC5 cannot detect.
         for (width, counts) in ABOVE.iter().zip(above) {
             let bad: usize = counts.iter().map(|c| c.frames - c.good).sum();
             let wrong: usize = counts.iter().map(|c| c.wrong).sum();
@@ -101,7 +101,7 @@ fn pulses_are_filtered_at_any_phase_on_both_edges() {
     filter(&KINDS[1..], 1);
 }
 
-/// Catches a filter that counts whole cycles only: 3.4 cycles are 6 or 7 looks.
+/// Catches a filter that counts whole cycles only: 3.4 cycles are 6 or 7 samples.
 fn half_a_cycle_counts(kind: Kind, step: usize) {
     let cases = with_glitches(kind, 3.4, step);
     let mut both = cases.clone();

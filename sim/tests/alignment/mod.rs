@@ -1,4 +1,4 @@
-//! The phase of the samples: how much jitter, drift and noise it tolerates, with both kinds of input, in all modes.
+//! The sampling phase: tolerated jitter, drift and noise, with both kinds of input, in all modes.
 
 mod glitches;
 mod recovery;
@@ -18,7 +18,7 @@ use rtl_design::engine::{Compiled, LaneWords};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// What is run: system clock cycles in a bit, and on which edges DATA is looked at.
+/// Kind of input: system clock cycles in a bit, and sampling edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kind {
     /// System clock cycles in a bit.
@@ -51,12 +51,12 @@ impl Kind {
         Self { slower: 4, ..self }
     }
 
-    /// Looks at DATA in each bit.
+    /// Samples of DATA in each bit.
     pub const fn places(self) -> u64 {
         self.cycles * (1 + self.double_edge as u64)
     }
 
-    /// Peak jitter that a receiver with this many places can stand, in bits.
+    /// Peak jitter that a receiver with this many places tolerates, in bits.
     pub fn ideal_jitter(self) -> f64 {
         0.5 - 1.0 / self.places() as f64
     }
@@ -94,18 +94,18 @@ impl Kind {
     }
 }
 
-/// What became of the frames of a case behind the first ones.
+/// Results of a case after the first frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
-    /// All of them.
+    /// All frames.
     pub frames: usize,
-    /// Told as good, with the encoder's position, and exactly its pulses.
+    /// Reported as good, with the encoder's position, and exactly its pulses.
     pub good: usize,
-    /// Told as good, with another position.
+    /// Reported as good, with another position.
     pub wrong: usize,
 }
 
-/// The compiled design of a case; made once for all cases that share it.
+/// The compiled design of a case; shared by all cases with this design.
 pub fn engine(case: &Case) -> Compiled {
     static MADE: Mutex<BTreeMap<u64, Compiled>> = Mutex::new(BTreeMap::new());
     let design = case.design().expect("a design");
@@ -130,7 +130,7 @@ pub fn count(case: &Case, traces: &Traces<'_>, first: usize) -> Count {
             .filter(|f| (before..result.time).contains(&f.first_fall))
             .collect();
         let frame = frames.pop();
-        // Where the width is in doubt, frames that measure the delay come before.
+        // If the width is in doubt, frames that measure the delay come before.
         let are_slow = frames
             .iter()
             .all(|f| frame.is_some_and(|last| f.measures_for(last)));
@@ -143,7 +143,7 @@ pub fn count(case: &Case, traces: &Traces<'_>, first: usize) -> Count {
     count
 }
 
-/// Runs cases and counts their frames behind the calibration and `warm_up` more.
+/// Runs cases and counts their frames after the calibration and `warm_up` more.
 pub fn run(cases: &[Case], warm_up: usize) -> Vec<Count> {
     let options = RunOptions {
         threads: 2,

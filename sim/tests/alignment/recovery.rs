@@ -1,14 +1,14 @@
-//! The recovery time that is told, with few cycles and places in a bit.
+//! The reported recovery time, with few cycles and places in a bit.
 
 use super::Kind;
 use endat_sim::campaign::{self, Case, RunOptions, Traces};
 use endat_sim::{NS, US};
 
-/// Two cycles, as with more of them in a bit; the place of the last edge; and CLOCK that was held for less than a bit.
+/// Tolerance: two cycles, as with more cycles in a bit; the place of the last edge; and a CLOCK held for less than a bit.
 const CYCLES_OFF: u64 = 4;
 
-/// Also where all pulses are sent before the start bit is back, so that CLOCK waits LOW for the answer; and where cells are shorter than the
-/// way of a sample through the receiver.
+/// Also if all pulses are sent before the start bit returns, so that CLOCK waits LOW for the answer, and if cells are shorter than the
+/// latency of a sample in the receiver.
 fn is_measured(kinds: &[Kind], widths: &[u32]) {
     let tm = 15 * US;
     let mut cases = vec![];
@@ -24,9 +24,9 @@ fn is_measured(kinds: &[Kind], widths: &[u32]) {
         }
     }
     let judge = |case: &Case, traces: &Traces<'_>| {
-        // DATA rises a little after the last clock edge, and falls at the end of tm.
+        // DATA rises slightly after the last clock edge, and falls at the end of tm.
         let want = (tm - case.encoder.clock_to_data) * case.system_hz / 1_000_000_000_000;
-        // The last result tells that of the frame before it.
+        // The last result has the recovery time of the previous frame.
         let got = traces.results.last().map_or(0, |r| r.recovery_cycles);
         (got.abs_diff(want) > CYCLES_OFF).then(|| {
             format!(

@@ -64,7 +64,7 @@ impl Play {
             middle: columns(&recorded.middle),
         };
         assert_eq!(stimulus.middle.len(), stimulus.cycles.len());
-        // The two looks differ: without the falling edge the rest would be another run.
+        // The two samples of a cycle differ: without the falling edge the run would be another one.
         assert!(stimulus
             .middle
             .iter()

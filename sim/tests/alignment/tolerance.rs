@@ -1,4 +1,4 @@
-//! How much jitter the phase tolerates: against the ideal `0.5 - 1 / places`.
+//! Tolerated jitter, compared with the ideal `0.5 - 1 / places`.
 
 use super::{run, Count, Kind};
 use endat_hdl::endat::line_delay::mode;
@@ -13,7 +13,7 @@ fn sum(counts: &[Count]) -> Count {
 }
 
 /// Runs every oversampling with every jitter and these delays, in eighths of a bit: cells of 12 frames. At least `part_min` of the cells
-/// are good, and one bad frame in 16 passes the CRC by chance, and `lucky` more.
+/// are good; at most one bad frame in 16, plus `lucky`, passes the CRC by chance.
 fn area(kinds: &[Kind], eighths: &[u32], part_min: f64, lucky: usize) {
     let jitters = [0.0, 0.1, 0.2, 0.3, 0.4];
     let mut cases: Vec<Case> = vec![];
@@ -43,7 +43,7 @@ fn area(kinds: &[Kind], eighths: &[u32], part_min: f64, lucky: usize) {
         "{passed} of {} cells, {part:.3}",
         cases.len()
     );
-    // What passes the CRC by chance is one bad frame in 32 at most, and there are few bad ones in a cell.
+    // At most one bad frame in 32 passes the CRC by chance, and a cell has few bad ones.
     let all = sum(&counts);
     let bad = all.frames - all.good;
     assert!((all.wrong - all.wrong.min(lucky)) * 16 <= bad, "{all:?}");
@@ -52,7 +52,7 @@ fn area(kinds: &[Kind], eighths: &[u32], part_min: f64, lucky: usize) {
 
 #[test]
 fn the_area_of_tolerance_is_that_of_an_ideal_receiver() {
-    // Every eighth of a bit once, from nothing to 20 bits.
+    // Every eighth of a bit once, from 0 to 20 bits.
     let eighths: Vec<u32> = (0..=160).step_by(13).take(12).collect();
     area(&[4, 16].map(Kind::single), &eighths, 0.95, 2);
 }
@@ -64,7 +64,7 @@ fn the_area_of_tolerance_is_that_of_an_ideal_receiver_in_every_cell() {
     area(&[4, 6, 8, 16, 32].map(Kind::single), &eighths, 0.82, 0);
 }
 
-/// The largest jitter at which all of so many frames are good after a warm-up, whatever the delay's part of a cycle is, as a part of the
+/// The largest jitter at which all frames after a warm-up are good, for any fraction of a cycle in the delay, as a part of the
 /// ideal one.
 fn reached(kind: Kind, phase_mode: u64, percent: &[u32], (warm_up, frames): (usize, usize)) -> f64 {
     let parts: Vec<f64> = percent.iter().map(|p| f64::from(*p) / 100.0).collect();
@@ -90,7 +90,7 @@ fn reached(kind: Kind, phase_mode: u64, percent: &[u32], (warm_up, frames): (usi
     good.count().checked_sub(1).map_or(0.0, |last| parts[last])
 }
 
-/// Frames in which the tracker finds the phase, and those that are counted.
+/// Frames in which the tracker settles, and counted frames.
 const FRAMES: (usize, usize) = (120, 100);
 
 fn tracked_phase_reaches_the_ideal(kinds: &[Kind], frames: (usize, usize)) {
@@ -126,7 +126,7 @@ fn tracked_phase_tolerates_the_ideal_jitter_at_every_oversampling() {
     tracked_phase_reaches_the_ideal(&kinds, FRAMES);
 }
 
-/// With the phase of one jittered edge half of it is left; the model of jitter and the judge can tell the difference.
+/// If one jittered edge sets the phase, half of the tolerance is left; the jitter model and the judge can distinguish the two.
 #[test]
 fn phase_from_the_start_bit_tolerates_half_of_that() {
     let part = reached(Kind::single(8).slower(), mode::FRAME, &[45, 75], (10, 20));
@@ -142,7 +142,7 @@ fn phase_from_the_start_bit_tolerates_half_of_that_at_8_and_16_places() {
     }
 }
 
-/// Runs bits of four places for so many frames on each of 128 lines.
+/// Runs bits of four places for this many frames on each of 128 lines.
 fn four_places_are_enough(kinds: &[Kind], frames: usize) {
     for &kind in kinds {
         let case = |seed| kind.case(0.15, 3.0 + seed as f64 / 128.0, frames, seed);
@@ -165,7 +165,7 @@ fn a_bit_of_four_places_is_enough_for_a_hundred_thousand_frames() {
     four_places_are_enough(&[Kind::single(4), Kind::double(2)], 800);
 }
 
-/// Runs these widths with delays from nothing to 8 us: exactly the pulses that the encoder needs, while tcal moves the start bit about.
+/// Runs these widths with delays from 0 to 8 us: exactly the pulses that the encoder needs, while tcal moves the start bit.
 fn pulses_are_exact(kinds: &[Kind], widths: &[u32], delays: &[u32]) {
     use endat_sim::US;
     let mut cases = vec![];

@@ -4,7 +4,7 @@ use super::{count, engine, Kind};
 use endat_hdl::endat::{line_delay::mode, transaction::cause};
 use endat_sim::{campaign::Traces, line::Jitter, Time, MS, US};
 
-/// A delay that grows by `drift` ps in each microsecond, for so many frames.
+/// A delay that grows by `drift` ps in each microsecond, for this many frames.
 fn wanders(kind: Kind, jitter_bits: f64, frames: usize, drift: u64) {
     let mut case = kind.case(jitter_bits, 3.0, frames, 7);
     case.line.data_in.drift = drift as i64;
@@ -12,7 +12,7 @@ fn wanders(kind: Kind, jitter_bits: f64, frames: usize, drift: u64) {
     let got = count(&case, &Traces::of(&bench), case.calibration_frames());
     assert_eq!((got.good, got.wrong), (got.frames, 0), "{kind:?}");
     let moved = bench.now() / US * drift;
-    // A frame and its recovery time take 10 us and more.
+    // A frame and its recovery time take at least 10 us.
     assert!(moved >= 10 * drift * frames as u64, "{moved} ps");
     let results = bench.results();
     let places = results[results.len() - 1].delay_cycles - results[4].delay_cycles;
@@ -23,7 +23,7 @@ fn wanders(kind: Kind, jitter_bits: f64, frames: usize, drift: u64) {
     );
 }
 
-/// 0.4 us, five times as fast as in the slow test; with jitter as fast as there.
+/// 0.4 us, five times as fast as in the slow test; with jitter at the same rate.
 #[test]
 fn slow_drift_costs_no_frame() {
     wanders(Kind::single(4), 0.0, 800, 50);
@@ -45,11 +45,11 @@ fn slow_drift_costs_no_frame_of_ten_thousand() {
 /// After the frames that measure the delay and some more, and before the last ones.
 const STEP: Time = 1_200 * US;
 
-/// The largest step after which the phase is certain. After a larger one the delay may be wrong by a whole bit: the window of the start
-/// bit is as wide as a bit. Then positions are still right, but the encoder does not see exactly its pulses.
+/// The largest step after which the phase is certain. After a larger one the delay may be wrong by a whole bit, because the window of the start
+/// bit is as wide as a bit. Positions are still right then, but the encoder does not receive exactly its pulses.
 const CERTAIN_SIXTEENTHS: u64 = 6;
 
-/// Steps of these sixteenths of a bit, both ways.
+/// Steps of these sixteenths of a bit, in both directions.
 fn steps(kinds: &[Kind], steps_sixteenths: &[u64]) {
     for &kind in kinds {
         for sign in [-1.0, 1.0] {
@@ -69,7 +69,7 @@ fn steps(kinds: &[Kind], steps_sixteenths: &[u64]) {
                     continue;
                 }
                 assert!(got.good + 1 >= got.frames, "{what}");
-                // The phase is found again: the last frames are good.
+                // The phase recovers: the last frames are good.
                 let got = count(&case, &Traces::of(&bench), case.frames - 20);
                 assert_eq!(got.good, got.frames, "{what}");
             }
@@ -98,7 +98,7 @@ fn a_step_of_up_to_a_bit_never_gives_a_wrong_position() {
     steps(&kinds, &all);
 }
 
-/// The start bit's edge is looked for in its window in every mode, whether the cells follow it or not.
+/// The edge of the start bit must be in its window in every mode, whether the cells follow it or not.
 fn windows(kinds: &[Kind], steps_cycles: &[i64]) {
     const WINDOW_CYCLES: i64 = 6;
     for &kind in kinds {

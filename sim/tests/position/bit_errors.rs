@@ -1,4 +1,4 @@
-//! Wrong bits in an answer: none of them becomes a position.
+//! Wrong bits in an answer never become a position.
 
 use super::rig::*;
 use endat_hdl::endat::transaction::cause;
@@ -6,7 +6,7 @@ use endat_hdl::protocol::ModeCommand::{self, SendPosition, SendPositionAddInfo};
 use endat_sim::encoder::Defect;
 use rtl_design::engine::Compiled;
 
-/// Longest burst that a CRC5 is sure to see.
+/// Longest burst that a CRC5 always detects.
 const BURST_BITS: u32 = 5;
 
 /// Frames of several widths and both kinds, at the fastest clock of the 100 MHz design.
@@ -23,7 +23,7 @@ fn setups() -> Vec<Setup> {
     .into()
 }
 
-/// A frame that is soon over.
+/// A short frame.
 fn narrow(command: ModeCommand) -> Setup {
     Setup::new((100_000_000, 12_500_000), command, 3, 5.0)
 }
@@ -37,7 +37,7 @@ fn bursts() -> impl Iterator<Item = (u32, u128)> {
     })
 }
 
-/// Sends a frame with each mask, every one between two good ones. `judge` gets the mask and what became of the frame.
+/// Sends a frame with each mask, each between two good frames. `judge` receives the mask and the result.
 fn with_masks(
     setup: &Setup,
     measured: &Compiled,
@@ -104,7 +104,7 @@ fn every_single_bit_error_and_every_burst_behind_the_start_bit_is_refused_as_crc
     errors_are_refused(&setups());
 }
 
-/// Without its start bit a frame is taken from a later bit on, too long for the encoder, or not at all.
+/// Without its start bit a frame is sampled from a later bit on, with too many pulses for the encoder, or not at all.
 fn start_bit_wrong(masks: &[u128], seeds: u64, mut judge: impl FnMut(&Setup, u128, &mut Rig)) {
     for setup in setups() {
         let measured = setup.measured();
@@ -113,7 +113,7 @@ fn start_bit_wrong(masks: &[u128], seeds: u64, mut judge: impl FnMut(&Setup, u12
             setup.encoder.seed = seed;
             with_masks(&setup, &measured, masks, |mask, rig| {
                 judge(&setup, mask, rig);
-                // The encoder, which saw too many pulses, needs a while to be ready.
+                // The encoder, which received too many pulses, needs a while to be ready.
                 rig.run_for(30 * endat_sim::US);
                 settle(rig);
             });
@@ -137,8 +137,8 @@ fn a_wrong_start_bit_alone_is_always_refused() {
     });
 }
 
-/// The CRC does not cover the start bit, and a receiver cannot know how long an encoder calculates: with more wrong bits behind it, what
-/// is believed is exactly what looks like a right answer.
+/// The CRC does not cover the start bit, and a receiver does not know the calculation time of an encoder. So with more wrong bits after it,
+/// exactly the sequences that form a right answer are accepted.
 fn bursts_on_the_start_bit(seeds: u64) {
     let masks: Vec<u128> = bursts().map(|(_, p)| p).filter(|p| *p != 1).collect();
     let (mut count, mut unlucky) = (0, 0);

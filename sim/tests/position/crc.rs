@@ -1,4 +1,4 @@
-//! The core's three CRC blocks against published vectors and a CRC library.
+//! The core's three CRC blocks, compared with published vectors and a CRC library.
 
 use endat_hdl::endat::crc5::{Crc5Check, Crc5Fixed, Crc5Word, MAX_COVERED_BITS};
 use endat_sim::rng::Rng;
@@ -7,7 +7,7 @@ use rtl_design::engine::{Compiled, Engine};
 use rust_hdl::prelude::Block;
 use std::sync::LazyLock;
 
-/// Covered bits in the order of transmission, and their CRC.
+/// Covered bits in the order of transmission, with their CRC.
 struct Vector {
     name: String,
     bits: Vec<bool>,
@@ -42,7 +42,7 @@ fn compiled(mut block: impl Block) -> Compiled {
     Compiled::new(&design).expect("no loop")
 }
 
-/// The CRCs that the run-time block accepts for these covered bits, the first `error_bits` of which are F1 and F2.
+/// The CRCs that the run-time block accepts for these covered bits, of which the first `error_bits` are F1 and F2.
 fn parallel(engine: &mut Compiled, bits: &[bool], error_bits: usize) -> Vec<u8> {
     let [clear, word_bit, crc_bit, bit] =
         ["clear", "word_bit", "crc_bit", "bit"].map(|name| engine.port(name));
@@ -79,7 +79,7 @@ fn parallel(engine: &mut Compiled, bits: &[bool], error_bits: usize) -> Vec<u8> 
         .collect()
 }
 
-/// A block of exactly this length, if there is one in the list: the top bit was received first.
+/// A block of exactly this length, if the list has one: the top bit was received first.
 fn fixed(bits: &[bool]) -> Option<u8> {
     macro_rules! lengths {
         ($($n:literal)*) => {
@@ -95,7 +95,7 @@ fn fixed(bits: &[bool]) -> Option<u8> {
     Some(engine.get(crc) as u8)
 }
 
-/// The CRC of the word as it comes in, its last bit at the lowest of the four places that has room for it.
+/// The CRC of the word on reception, with its last bit at the lowest of the four places that fits.
 fn as_it_comes(engine: &mut Compiled, bits: &[bool]) -> u8 {
     let [word, covered, crc] = ["word", "covered", "crc"].map(|name| engine.port(name));
     let places = [5, 20, 35, 50].into_iter().find(|n| *n >= bits.len());
@@ -106,7 +106,7 @@ fn as_it_comes(engine: &mut Compiled, bits: &[bool]) -> u8 {
     engine.get(crc) as u8
 }
 
-/// The CRC library works on bytes: zeros in front fill the first one, and the preset is the one that they turn into 11111.
+/// The CRC library works on bytes: leading zeros fill the first one, and the preset is the value that they turn into 11111.
 fn library(bits: &[bool]) -> u8 {
     static CRC: LazyLock<crc::Crc<u8>> = LazyLock::new(|| {
         crc::Crc::<u8>::new(&crc::Algorithm {
@@ -121,7 +121,7 @@ fn library(bits: &[bool]) -> u8 {
         })
     });
     let fill = bits.len().next_multiple_of(8) - bits.len();
-    // x^15 = 1: `fill` zeros on their way in are undone by 15 - fill (or 30 - ...) zeros before them.
+    // x^15 = 1: 15 - fill (or 30 - ...) zeros before them undo `fill` entering zeros.
     let preset = (0..32).find(|start| {
         let mut register = *start;
         (0..fill).for_each(|_| {
@@ -202,8 +202,8 @@ fn random_words_of_every_length_agree_with_the_library() {
     }
 }
 
-/// The block that decides is a sum of bits and constants, and so is a CRC: both agree on every word of a length if they agree on 0 and on
-/// each single bit. So this is a proof for every width, with F1 and F2 or without.
+/// The block for the verdict is a sum of bits and constants, and so is a CRC: both agree on every word of a length if they agree on 0 and on
+/// each single bit. So this is a proof for every width, with and without F1 and F2.
 #[test]
 fn the_crc_of_every_word_is_that_of_the_library() {
     let mut coming = compiled(Crc5Word::default());

@@ -1,4 +1,4 @@
-//! What the core itself has reason to doubt is no position: lines that change under way, settings that change, registers that are upset.
+//! The core rejects doubtful positions: lines that change during a frame, settings that change, upset registers.
 
 use super::rig::*;
 use endat_hdl::endat::{
@@ -14,7 +14,7 @@ use rust_hdl::prelude::Block;
 /// Period of a frame that measures the delay.
 const SLOW: Time = 5 * US;
 
-/// A plug is pulled in an answer, and fail-safe bias takes DATA HIGH. The CRC of all ones passes now and then; then DATA does not fall.
+/// A plug is pulled in an answer, and the fail-safe bias sets DATA HIGH. The CRC of all ones is right in some cases; then DATA does not fall.
 #[test]
 fn a_plug_that_is_pulled_in_an_answer_never_leaves_a_wrong_position() {
     let mut withdrawn = 0;
@@ -23,7 +23,7 @@ fn a_plug_that_is_pulled_in_an_answer_never_leaves_a_wrong_position() {
         let measured = setup.measured();
         for seed in 0..900 {
             let mut setup = setup.clone();
-            // The answer begins some 6 us behind the trigger, and takes 8 us.
+            // The answer begins about 6 us after the trigger, and takes 8 us.
             let pulled = 7 * US + seed * 7_900 * NS / 900;
             setup.encoder.unplugged.push(pulled..10 * MS);
             setup.encoder.seed = seed;
@@ -48,13 +48,13 @@ fn a_plug_that_is_pulled_in_an_answer_never_leaves_a_wrong_position() {
     assert!(withdrawn > 5, "{withdrawn}: the CRC let too few pass");
 }
 
-/// With guards a frame has the settings of the cycle with its trigger; without them they stay as they are while the channel is busy.
+/// With guards a frame uses the settings of the cycle with its trigger; without them they must be stable while the channel is busy.
 #[test]
 fn settings_that_change_in_a_frame_count_for_the_next_one() {
     change_in_a_frame(Features::GUARDED, true);
 }
 
-/// A service finds width, command and rate of the encoder, and may say so while a frame of a trigger is under way.
+/// A service determines width, command and rate of the encoder, and may set them during a frame of a trigger.
 #[test]
 fn width_command_and_rate_of_a_served_channel_count_for_the_next_frame() {
     let requests = Features {
@@ -95,13 +95,13 @@ fn change_in_a_frame(features: Features, all: bool) {
             assert_eq!(
                 (result.cause_name(), result.fresh, result.position),
                 ("none", true, sent),
-                "changed {at} cycles behind the trigger"
+                "changed {at} cycles after the trigger"
             );
         }
     }
 }
 
-/// A channel whose registers can be reached.
+/// A channel with accessible registers.
 fn open_engine() -> Compiled {
     let times = FixedTimes {
         abort_us: ABORT_US,
@@ -113,7 +113,7 @@ fn open_engine() -> Compiled {
     Compiled::keeping(&design, Keep::Registers).unwrap()
 }
 
-/// Bits of a register, by its name.
+/// Bits of a register, by name.
 pub fn register(engine: &Compiled, name: &str) -> (usize, usize) {
     let net = engine.nets().position(|n| n == name);
     let net = net.unwrap_or_else(|| panic!("no register {name}"));
@@ -162,7 +162,7 @@ fn a_held_position_or_time_stamp_that_is_upset_is_told_and_the_next_frame_is_goo
     }
 }
 
-/// From its edge to the result the time stamp waits as long as a frame lasts; in the cycles before the position is there, too.
+/// The time stamp waits for a frame from its edge to the result, including the cycles before the position is ready.
 #[test]
 fn a_time_stamp_that_is_upset_before_its_position_comes_is_told() {
     let mut rig = open_rig();
@@ -181,7 +181,7 @@ fn a_time_stamp_that_is_upset_before_its_position_comes_is_told() {
             rig.run_cycles(frame - back - 1);
             rig.engine().flip(net, bit);
             assert!(rig.run_until_done(MS, |b| !b.results().is_empty()));
-            // Its first look at what has just been stored.
+            // The guard's first check of the stored value.
             rig.run_cycles(3);
             let ports = ["first_fall_timestamp", "fresh", "cause"];
             let [stamp, fresh, cause] = ports.map(|port| rig.get(port) as u64);
@@ -196,7 +196,7 @@ fn a_time_stamp_that_is_upset_before_its_position_comes_is_told() {
     assert!(told >= 3 * 12, "{told}");
 }
 
-/// From the last bit of the position to its publication the word waits for the CRC and the bit behind it.
+/// From its last bit to its publication the position waits for the CRC and the bit after it.
 #[test]
 fn a_word_that_is_upset_before_it_is_published_is_refused() {
     let mut rig = open_rig();
@@ -247,7 +247,7 @@ fn the_driver_is_on_while_a_command_is_sent_and_never_else() {
                 assert_eq!(
                     rig.get("data_oe"),
                     0,
-                    "bit {bit}, {after} ps behind the trigger"
+                    "bit {bit}, {after} ps after the trigger"
                 );
             }
         }
@@ -281,7 +281,7 @@ fn a_trigger_has_its_result_even_if_the_frame_is_lost() {
     }
 }
 
-/// The guard sees the register in the cycle of the trigger: no frame may begin in that cycle, or it ends with a second result.
+/// The guard sees the register in the cycle of the trigger. A frame that begins in that cycle would end with a second result.
 #[test]
 fn trigger_in_the_cycle_of_an_abort_has_one_result() {
     let mut rig = open_rig();
@@ -296,18 +296,18 @@ fn trigger_in_the_cycle_of_an_abort_has_one_result() {
         let causes: Vec<u64> = rig.results().iter().map(|r| r.cause).collect();
         assert_eq!(causes, [cause::UPSET], "{name}");
         assert_eq!(rig.frames(0).len(), 0, "{name}");
-        // An upset `owing` makes the trigger look lost, too: the next result may say so.
+        // An upset `owing` makes the trigger look lost, too: the next result may report this.
         assert!(any_frame(&mut rig).fresh, "{name}");
     }
 }
 
-/// `late` is of the frame that was announced without a start bit; the next frame begins without it.
+/// `late` belongs to a frame announced without a start bit; the next frame begins without it.
 #[test]
 fn late_flag_of_an_earlier_frame_does_not_end_the_next_one() {
     let mut rig = open_rig();
     let ready = rig.engine().clone();
     let (net, _) = register(&ready, "transaction.late");
-    // The phase in which the flag counts begins at once.
+    // The phase in which the flag matters begins at once.
     let mut setup = Setup::card();
     setup.settings.first_low_extra_cycles = 0;
     let mut rig = setup.on(ready);
@@ -316,7 +316,7 @@ fn late_flag_of_an_earlier_frame_does_not_end_the_next_one() {
     good_frame(&mut rig);
 }
 
-/// Another encoder, on a longer cable, is plugged in between two triggers: the delay is found anew, not one that is wrong by periods.
+/// Another encoder, on a longer cable, is plugged in between two triggers: the delay is measured again, and not wrong by periods.
 #[test]
 fn data_that_was_high_between_frames_has_the_delay_measured_again() {
     let setup = Setup::card();
@@ -356,7 +356,7 @@ fn a_reset_is_followed_by_the_quiet_time_of_an_aborted_frame() {
     }
 }
 
-/// A timer past its limit is over; one that compares for equality would come round after 65 ms.
+/// A timer past its limit ends; with a comparison for equality it would wrap after 65 ms.
 #[test]
 fn a_timer_that_is_upset_does_not_make_the_quiet_time_longer() {
     let mut rig = open_rig();
@@ -376,7 +376,7 @@ fn a_timer_that_is_upset_does_not_make_the_quiet_time_longer() {
     }
 }
 
-/// A timer setting of 0 is over at once, but the pause behind it is not.
+/// A timer setting of 0 ends at once, but the pause after it does not.
 #[test]
 fn a_limit_of_zero_does_not_shorten_the_quiet_time() {
     let mut setup = Setup::card();
@@ -391,9 +391,9 @@ fn a_limit_of_zero_does_not_shorten_the_quiet_time() {
     assert!((rig.now() - begin) / US >= ABORT_US - 1);
 }
 
-/// Where the clock is slow, an encoder of another width can end its frame between two pulses and look like a good one. The position
-/// comes from the frame at the full clock behind it.
-/// Every `step`th width from 8 to 48, and so many encoders of each.
+/// At a slow clock, an encoder of another width can end its frame between two pulses and look like a good one. The position
+/// comes from the later frame at the full clock.
+/// Runs every `step`th width from 8 to 48, with this many encoders of each.
 fn other_widths(step: usize, seeds: u64) {
     let setup = Setup::card();
     let measured = setup.measured();
@@ -424,7 +424,7 @@ fn other_widths(step: usize, seeds: u64) {
             }
         }
     }
-    // At least one in four encoders is measured, and one in sixteen looks good then.
+    // At least one in four encoders is measured, and one in sixteen of these looks good.
     let encoders = 40 / step * seeds as usize;
     assert!(
         slow * 4 > encoders && looked_good * 16 > encoders,

@@ -1,4 +1,4 @@
-//! Every fault ends in its own cause, within its limit; the last good position stays and the next frame is good again.
+//! Every fault has its cause, within its limit. The last good position remains, and the next frame is good again.
 
 use super::rig::*;
 use endat_hdl::endat::channel::Features;
@@ -10,7 +10,7 @@ use endat_sim::{
     Time, MS, NS, US,
 };
 
-/// Bits of the raw flags beyond those of the causes.
+/// Raw flags that are not causes.
 const PARALLEL_CRC: u64 = 1 << 8;
 const TAIL_NOT_HIGH: u64 = 1 << 9;
 
@@ -23,7 +23,7 @@ const fn flag(cause: u64) -> u64 {
 struct Story {
     rig: Rig,
     faulty: ChannelResult,
-    /// From the trigger of the faulty frame to its result.
+    /// Time from the trigger of the faulty frame to its result.
     took: Time,
 }
 
@@ -58,7 +58,7 @@ fn of_defect(defect: Defect) -> Story {
     story(&Setup::card().defect(1, defect))
 }
 
-/// From the trigger to the end of the turnaround as the channel sees it, from where it waits for the start bit.
+/// Time from the trigger to the end of the turnaround, where the channel starts to wait for the start bit.
 fn turnaround(setup: &Setup) -> Time {
     let s = &setup.settings;
     let cycles =
@@ -92,7 +92,7 @@ fn data_high_before_a_frame_is_data_not_low_at_once_and_without_a_clock_edge() {
     // A quiet time, then DATA low for tR.
     settle(&mut rig);
     let quiet = rig.now() - faulty.time;
-    // The first microsecond is not a whole one, and the count begins with it.
+    // The first microsecond is incomplete, and counts.
     assert!(quiet >= (ABORT_US - 2) * US, "{quiet} ps");
     rig.run_until_done(MS, |b| b.get("data_i") == 0);
     rig.run_for(US);
@@ -129,7 +129,7 @@ fn a_silent_encoder_is_no_start_bit_when_the_limit_is_over() {
         let limit = setup.settings.start_timeout_us * US;
         let waited = s.took - turnaround(&setup);
         assert!((limit - US..=limit + US).contains(&waited), "{waited} ps");
-        // The clock stops; the encoder may and does say so.
+        // The clock stops; the encoder may note this.
         let frame = &s.rig.frames(0)[1];
         assert_eq!(frame.end, FrameEnd::Stopped);
         let stops = |v: &Violation| matches!(v, Violation::StoppedBeforeAnswer { .. });
@@ -145,7 +145,7 @@ fn a_silent_encoder_is_no_start_bit_when_the_limit_is_over() {
 fn an_encoder_as_slow_as_the_limit_is_still_heard() {
     let mut setup = Setup::card();
     let limit = setup.settings.start_timeout_us * US;
-    // Less the half period in which a start bit is sampled, and a microsecond's tick.
+    // Minus the half period in which a start bit is sampled, and a microsecond tick.
     setup.encoder.tcal = turnaround(&setup) + limit - 2 * US;
     let mut rig = setup.ready();
     good_frame(&mut rig);
@@ -184,7 +184,7 @@ fn a_start_edge_outside_its_window_is_refused_and_the_delay_is_measured_again() 
             assert_eq!(result.cause, cause::START_WINDOW, "{more} ns {result:?}");
             assert_eq!(result.flags, flag(cause::START_WINDOW));
             assert!(!result.fresh);
-            // Told when the start bit is sampled, at most a period after its edge.
+            // Reported when the start bit is sampled, at most a period after its edge.
             let frame = &rig.frames(0)[0];
             let edge = frame.start_time + moved.encoder.clock_to_data + moved.line.round_trip();
             assert!(result.time < edge + period_ps + 100 * NS);
@@ -212,7 +212,7 @@ fn a_wrong_crc_is_a_crc_error_whatever_its_bits() {
             u64::from(xor)
         );
         assert_eq!(s.faulty.crc_received, crc_sent(&s.rig.frames(0)[1]));
-        assert_eq!(s.rig.violations(0), [], "the frame is whole");
+        assert_eq!(s.rig.violations(0), [], "the frame is complete");
     }
 }
 
@@ -228,7 +228,7 @@ fn alarms_of_the_encoder_are_f1_and_f2_with_a_right_crc() {
         let s = of_defect(defect);
         assert_eq!((s.faulty.cause, s.faulty.flags), (cause, flags));
         assert_eq!(s.faulty.crc_received, s.faulty.crc_computed);
-        assert_eq!(s.rig.violations(0), [], "the frame is whole");
+        assert_eq!(s.rig.violations(0), [], "the frame is complete");
     }
 }
 
@@ -263,29 +263,29 @@ fn data_that_does_not_fall_withdraws_the_position_and_brings_back_the_one_before
         .map(|name| rig.get(name) as u64),
         [before.position, before.first_fall_timestamp, 1, 0]
     );
-    // Its age goes on.
+    // Its age continues.
     rig.run_cycles(2);
     let age = (rig.now() - before.time) / US;
     assert!((age.saturating_sub(40)..=age).contains(&(rig.get("age_us") as u64)));
-    assert_eq!(rig.results().len(), 2, "it is no result of its own");
+    assert_eq!(rig.results().len(), 2, "no separate result");
     rig.run_for(MS);
     settle(&mut rig);
     good_frame(&mut rig);
     assert_eq!((rig.violations(0), rig.conflicts(0)), (&[][..], vec![]));
 }
 
-/// A port that brings the previous position back.
+/// A port that restores the previous position.
 const RESTORING: Features = Features {
     restore: true,
     ..Features::NONE
 };
-/// The same, with a separate copy of that position.
+/// A port with a separate copy of that position.
 const WITH_COPY: Features = Features {
     second_receiver: true,
     ..RESTORING
 };
 
-/// Without `restore` no position is valid after one that was withdrawn; with a copy of its own the position before comes back as well.
+/// Without `restore` no position is valid after a withdrawn one; with a separate copy the previous position returns, too.
 #[test]
 fn a_withdrawn_position_gives_way_as_its_port_says() {
     for (features, valid) in [(Features::NONE, 0), (WITH_COPY, 1), (Features::GUARDED, 1)] {
@@ -303,7 +303,7 @@ fn a_withdrawn_position_gives_way_as_its_port_says() {
     }
 }
 
-/// A port that restores has nothing to bring back yet.
+/// A port that restores has no previous position yet.
 #[test]
 fn withdrawal_of_the_first_position_leaves_no_valid_one() {
     for features in [RESTORING, WITH_COPY, Features::GUARDED] {
@@ -377,7 +377,7 @@ fn a_trigger_within_a_frame_is_an_overrun_and_the_position_is_good() {
     }
 }
 
-/// A CRC5 passes 1 of 32 wrong words. Of those, the cell after the frame betrays the ones that leave it LOW.
+/// A CRC5 passes 1 of 32 wrong words. The cell after the frame detects those of them that leave it LOW.
 fn other_widths(seeds: u64) {
     let setup = Setup::card();
     let measured = setup.measured();
@@ -401,7 +401,7 @@ fn other_widths(seeds: u64) {
                 by_tail += 1;
                 assert_eq!(result.cause, cause::DATA_NOT_FALLING);
                 assert_ne!(result.flags & TAIL_NOT_HIGH, 0, "{wider} {result:?}");
-                // What was there before stays.
+                // The previous state remains.
                 assert_eq!((rig.get("position_valid"), rig.get("fresh")), (1, 0));
             }
             unlucky += usize::from(result.fresh && tail);
@@ -424,7 +424,7 @@ fn no_position_of_another_width_passes_without_a_right_crc_and_a_high_tail() {
     other_widths(40);
 }
 
-/// x^15 = 1: an answer 15 bits short, followed by LOW, has a right CRC.
+/// x^15 = 1: an answer that is 15 bits short and followed by LOW has a right CRC.
 #[test]
 fn fifteen_bits_too_few_and_a_low_line_pass_the_crc_and_fail_at_the_tail() {
     let mut setup = Setup::card();
@@ -454,10 +454,13 @@ fn fifteen_bits_too_few_and_a_low_line_pass_the_crc_and_fail_at_the_tail() {
         let again = any_frame(&mut rig);
         assert_eq!((again.cause, again.fresh), (cause::NONE, true));
     }
-    assert!(passed > 0, "none passed the CRC: the tail was not tried");
+    assert!(
+        passed > 0,
+        "no answer passed the CRC: the tail check was not tested"
+    );
 }
 
-/// Catches a frame whose LOW tail hides what else is wrong with it.
+/// Catches a frame whose LOW tail hides other faults.
 #[test]
 fn a_low_tail_tells_a_wrong_crc_and_f1_of_the_frame_too() {
     let setup = Setup::card();

@@ -1,4 +1,4 @@
-//! The edges at the pins, to the cycle, and the two latencies.
+//! The edges at the pins, with cycle accuracy, and the two latencies.
 
 use super::rig::*;
 use endat_hdl::{
@@ -56,7 +56,7 @@ fn every_phase_is_half_a_period_and_the_first_low_one_has_its_extra() {
             setup.settings.period_cycles = period;
             setup.settings.first_low_extra_cycles = extra;
             setup.settings.start_window_cycles = 2;
-            // Without tST the fastest clock leaves an ordinary encoder too little time to let go.
+            // Without tST the fastest clock leaves a normal encoder too little time to release the line.
             setup.encoder.release = 1;
             let mut rig = watched(&setup);
             good_frame(&mut rig);

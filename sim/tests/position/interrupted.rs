@@ -1,11 +1,11 @@
-//! Plugs pulled, supplies lost, resets and triggers at any moment.
+//! Plugs pulled, supplies lost, resets and triggers at any time.
 
 use super::rig::*;
 use endat_hdl::endat::transaction::cause;
 use endat_sim::{bench::ChannelResult, encoder::Defect, rng::Rng, Time, MS, NS, US};
 use rtl_design::engine::Engine;
 
-/// Runs a frame that is disturbed, then until the encoder is back and the channel idle. Gives the result and the levels sampled for it.
+/// Runs a disturbed frame, then until the encoder is back and the channel idle. Returns the result and the levels sampled for it.
 fn disturbed(rig: &mut Rig, back: Time) -> (ChannelResult, Vec<bool>) {
     let result = any_frame(rig);
     rig.run_until(back.max(rig.now()) + 30 * US);
@@ -14,12 +14,12 @@ fn disturbed(rig: &mut Rig, back: Time) -> (ChannelResult, Vec<bool>) {
     (result, levels)
 }
 
-/// An encoder that is lost every so many picoseconds of a frame.
+/// An encoder that is lost at every `step` picoseconds of a frame.
 fn lost_every(step: Time) {
     let setup = Setup::card();
     let measured = setup.measured();
     let (mut good, mut bad, mut unlucky) = (0, 0, 0);
-    // 17 us of frame; then the recovery time.
+    // A frame takes 17 us, then the recovery time follows.
     for after in (0..21 * US).step_by(step as usize) {
         for length in [3 * US, 100 * US] {
             let setup = setup.clone().defect(0, Defect::BrownOut { after, length });
@@ -38,13 +38,13 @@ fn lost_every(step: Time) {
                     bad += 1;
                 }
             }
-            // An encoder that comes back within the mode command drives its idle level against the receiver.
+            // An encoder that returns within the mode command drives its idle level against the receiver.
             let drove = rig.conflicts(0).iter().filter(|c| c.both_on).count();
             assert!(drove == 0 || (length < 4 * US && after < 5 * US), "{what}");
             good_frame(&mut rig);
         }
     }
-    // Good ones only where the position is out already.
+    // Good results only after the position is published.
     let share = (step / HALF_CELL) as usize;
     assert!(
         good * share > 20 && bad * share > 100,
@@ -86,7 +86,7 @@ fn a_plug_pulled_and_put_back_at_every_cell_never_leaves_a_wrong_position() {
                 "{cell} {result:?}"
             );
         }
-        // As long as it is away a trigger is refused; then it is found again.
+        // A trigger is refused while the encoder is away; afterwards it works again.
         good_frame(&mut rig);
     }
 }
@@ -140,14 +140,14 @@ fn after_a_reset_within_a_frame_the_next_frame_is_good() {
         rig.trigger();
         rig.run_for(at);
         rig.reset();
-        // The encoder needs its own time to see that the clock has stopped.
+        // The encoder needs some time to detect that the clock has stopped.
         settle(&mut rig);
         good_frame(&mut rig);
         assert_eq!(rig.conflicts(0), [], "reset after {at} ps");
     }
 }
 
-/// Triggers at random moments, of random length, in every phase: each that meets an idle channel has one result, the others none.
+/// Triggers at random times, of random length, in every phase: each one during idle has one result, the others none.
 fn storms(seeds: u64) {
     for seed in 0..seeds {
         let mut setup = Setup::card();
@@ -159,7 +159,7 @@ fn storms(seeds: u64) {
         let mut rig = setup.ready();
         let mut rng = Rng::new(seed);
         let (mut accepted, mut lost, mut level, mut left) = (0, 0, false, 0u64);
-        // Mostly quiet, then mostly noisy, then always on.
+        // Mostly quiet, then mostly active, then always on.
         while rig.now() < 3 * MS {
             if left == 0 {
                 level = !level;

@@ -1,11 +1,11 @@
-//! Frames of real encoders that were not what they should be.
+//! Faulty frames of real encoders.
 
 use super::rig::*;
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand;
 use endat_sim::encoder::{Defect, PositionSource};
 
-/// An EQI 1331 at 200 kHz, read off an oscilloscope, start bit first: its CRC would be 0x19.
+/// An EQI 1331 at 200 kHz, read from an oscilloscope, start bit first: its CRC should be 0x19.
 #[test]
 fn a_frame_of_an_eqi_1331_with_a_wrong_crc_is_a_crc_error() {
     const READ_OFF: u64 = 0x31_A69C_1D24;
@@ -30,7 +30,10 @@ fn a_frame_of_an_eqi_1331_with_a_wrong_crc_is_a_crc_error() {
     assert_eq!(sent, READ_OFF);
     assert_eq!((read.crc_received, read.crc_computed), (0x04, 0x19));
     assert_eq!((read.cause, read.fresh), (cause::CRC, false), "{read:?}");
-    assert_eq!(read.position, good.position, "the last good one stays");
+    assert_eq!(
+        read.position, good.position,
+        "the last good position remains"
+    );
     settle(&mut rig);
     assert_eq!((rig.violations(0), rig.conflicts(0)), (&[][..], vec![]));
 }

@@ -1,6 +1,6 @@
-//! The position path of one channel, as it is elaborated for emission, against the encoder and line model.
+//! The position path of one channel, elaborated as for emission, with the encoder and line model.
 //!
-//! `rig` builds benches; the other modules each ask one question of the channel.
+//! `rig` builds benches; each of the other modules tests one property of the channel.
 
 mod bit_errors;
 mod crc;

@@ -1,4 +1,4 @@
-//! The encoder sees as many clock pulses as its frame has, or a cause says that it did not.
+//! The encoder receives exactly the clock pulses of its frame; otherwise a cause reports it.
 
 use super::{
     doubt::{open_rig, register},
@@ -7,7 +7,7 @@ use super::{
 use endat_hdl::endat::transaction::cause;
 use endat_sim::{encoder::FrameLog, Time, MS, NS, US};
 
-/// A count that is inverted in one place makes the frame longer or shorter, and the other counts see it.
+/// A count inverted in one place makes the frame longer or shorter, and the other counts detect it.
 #[test]
 fn a_count_of_pulses_that_is_upset_is_told() {
     let mut rig = open_rig();
@@ -27,7 +27,7 @@ fn a_count_of_pulses_that_is_upset_is_told() {
                 let cause = rig.get("cause");
                 assert!(
                     cause != 0 || is_whole,
-                    "{name} {bit}, {after} ps behind the trigger: {:?}",
+                    "{name} {bit}, {after} ps after the trigger: {:?}",
                     rig.frames(0)
                 );
                 told += usize::from(cause == u128::from(cause::UPSET));
@@ -37,7 +37,7 @@ fn a_count_of_pulses_that_is_upset_is_told() {
     }
 }
 
-/// By whole periods a delay is wrong without any sign of it in the answer: only the encoder sees the pulses that are too many.
+/// A delay that is wrong by whole periods does not affect the answer: only the encoder notices the additional pulses.
 #[test]
 fn a_tracked_delay_that_is_upset_is_measured_again() {
     let mut rig = open_rig();
@@ -57,7 +57,7 @@ fn a_tracked_delay_that_is_upset_is_measured_again() {
     }
 }
 
-/// What is asked for while a frame is on the wire is not forgotten when that frame ends well.
+/// A request during a frame remains pending when that frame ends normally.
 #[test]
 fn calibrate_in_the_middle_of_a_frame_measures_with_the_next_one() {
     for after in [US, 5 * US, 10 * US, 15 * US] {
@@ -72,6 +72,6 @@ fn calibrate_in_the_middle_of_a_frame_measures_with_the_next_one() {
         good_frame(&mut rig);
         settle(&mut rig);
         let periods: Vec<Time> = rig.frames(0).iter().map(|f| f.period).collect();
-        assert_eq!(periods[1], 5 * US, "{after} ps behind the trigger");
+        assert_eq!(periods[1], 5 * US, "{after} ps after the trigger");
     }
 }

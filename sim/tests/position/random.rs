@@ -1,4 +1,4 @@
-//! Everything that the sweep holds still: jitter, distortion, cable, encoder times, filter, window.
+//! Parameters that the sweep keeps constant: jitter, distortion, cable, encoder times, filter, window.
 
 use endat_sim::{
     campaign::{self, Case, RunOptions, Story, RATES},

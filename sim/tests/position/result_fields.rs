@@ -1,4 +1,4 @@
-//! Sequence, age, time stamp, delay and recovery time that come with a position.
+//! Sequence, age, time stamp, delay and recovery time of a position.
 
 use super::rig::*;
 use endat_hdl::endat::{channel, transaction::cause};
@@ -69,7 +69,7 @@ fn the_age_counts_microseconds_through_bad_frames_and_stops_at_its_end() {
         bad.age_us
     );
     assert_eq!(good_frame(&mut rig).age_us, 0);
-    // A tick in every other cycle, for speed.
+    // A tick in every second cycle, for speed.
     let engine = rig.engine();
     let [tick_us, age] = ["tick_us", "age_us"].map(|n| engine.port(n));
     let run = |engine: &mut Compiled, ticks: u32| {
@@ -90,7 +90,7 @@ fn the_age_counts_microseconds_through_bad_frames_and_stops_at_its_end() {
 fn the_recovery_time_is_measured_to_two_cycles() {
     let fast = [(100_000_000, 12_500_000), (128_000_000, 16_000_000)];
     let usual = [CARD, fast[0], fast[1]].map(|rates| (rates, 29, 20.0));
-    // All pulses are sent before the start bit is back: CLOCK waits LOW for the answer.
+    // All pulses are sent before the start bit returns: CLOCK waits LOW for the answer.
     let held = fast.map(|rates| (rates, 1, 150.0));
     for (rates, position_bits, cable_m) in usual.into_iter().chain(held) {
         for tm in [
@@ -103,12 +103,12 @@ fn the_recovery_time_is_measured_to_two_cycles() {
         ] {
             let mut setup = Setup::new(rates, SendPositionAddInfo, position_bits, cable_m);
             setup.encoder.tm = tm..=tm;
-            // With the calibrating frame, which has its own clock.
+            // Includes the calibrating frame, which has another clock.
             let mut rig = setup.fresh();
             for _ in 0..2 {
                 good_frame(&mut rig);
                 settle(&mut rig);
-                // DATA rises a little after the last clock edge, and falls at the end of tm.
+                // DATA rises slightly after the last clock edge, and falls at the end of tm.
                 let want = cycles(tm - setup.encoder.clock_to_data, rates.0);
                 let got = rig.get("recovery_cycles") as u64;
                 assert!(

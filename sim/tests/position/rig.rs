@@ -1,4 +1,4 @@
-//! Benches of one elaborated channel, and what a sound run looks like.
+//! Benches of one elaborated channel, and checks for a fault-free run.
 
 use endat_hdl::endat::channel::{Channel, Features, FixedTimes};
 use endat_hdl::protocol::ModeCommand;
@@ -22,16 +22,16 @@ use std::{
 /// System clock and EnDat clock, in hertz.
 pub type Rates = (u64, u64);
 
-/// The setting of the acquisition card.
+/// Rates of the acquisition card.
 pub const CARD: Rates = (100_000_000, 3_125_000);
 
-/// Longer than any frame with its time-outs.
+/// More than any frame with its time-outs.
 pub const FRAME_LIMIT: Time = 5 * MS;
 
 /// A channel on its bench.
 pub type Rig = Bench<Compiled>;
 
-/// The times that are fixed in the channels of these tests.
+/// The fixed times of the channels in these tests.
 fn fixed_times(system_hz: u64) -> FixedTimes {
     FixedTimes {
         abort_us: ABORT_US,
@@ -39,7 +39,7 @@ fn fixed_times(system_hz: u64) -> FixedTimes {
     }
 }
 
-/// A channel after power-up. The design is made once for each system clock and set of features.
+/// A channel after power-up. The design is elaborated once for each system clock and set of features.
 pub fn engine(system_hz: u64, features: Features) -> Compiled {
     static MADE: OnceLock<Mutex<BTreeMap<(u64, Features), Compiled>>> = OnceLock::new();
     let mut made = MADE
@@ -57,12 +57,12 @@ pub fn engine(system_hz: u64, features: Features) -> Compiled {
         .clone()
 }
 
-/// Everything around a channel.
+/// Environment of a channel.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// System clock.
     pub system_hz: u64,
-    /// What the channel can do.
+    /// Features of the channel.
     pub features: Features,
     /// Configuration.
     pub settings: ChannelSettings,
@@ -73,7 +73,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// A sound encoder on a sound cable, with fitting settings. The recovery time is short, where that is allowed.
+    /// A good encoder on a good cable, with suitable settings. The recovery time is short, if allowed.
     pub fn new(rates: Rates, command: ModeCommand, position_bits: u32, cable_m: f64) -> Self {
         let case = Case::new(rates, command, position_bits, cable_m);
         Self {
@@ -90,7 +90,7 @@ impl Setup {
         Self::new(CARD, ModeCommand::SendPositionAddInfo, 29, 10.0)
     }
 
-    /// The same with other features.
+    /// The setup with other features.
     pub fn with(self, features: Features) -> Self {
         Self { features, ..self }
     }
@@ -108,7 +108,7 @@ impl Setup {
             .answer_bits(self.settings.position_bits)
     }
 
-    /// Whether sampled levels, from the first HIGH on, are an answer without alarm and with a right CRC.
+    /// True if sampled levels, from the first HIGH on, form an answer without alarm and with a right CRC.
     pub fn believes(&self, levels: &[bool]) -> bool {
         let f2 = self.settings.command >> 5 != 0;
         believes(levels, self.answer_bits(), f2, true)
@@ -130,7 +130,7 @@ impl Setup {
         self.prepared(rig)
     }
 
-    /// A channel that goes on from some idle state, with a new line and encoder.
+    /// A channel that continues from an idle state, with a new line and encoder.
     pub fn on(&self, engine: Compiled) -> Rig {
         let pins = endat_sim::bench::PinNames::channel();
         let mut rig = Bench::new(engine, self.system_hz, vec![(pins, self.link())]);
@@ -149,21 +149,21 @@ impl Setup {
         rig.engine().clone()
     }
 
-    /// Like [`Setup::ready`], for an encoder whose recovery time would be a fault of the frame that measures.
+    /// As [`Setup::ready`], for an encoder whose recovery time would be a fault in the measuring frame.
     pub fn ready_with_other_recovery(&self) -> Rig {
         let mut usual = self.clone();
         usual.encoder.tm = 2 * US..=2 * US;
         self.on(usual.measured())
     }
 
-    /// A channel that has measured the delay of this line: the next frame runs at the full clock and is the
+    /// A channel that has measured the delay of this line. The next frame runs at the full clock and is the
     /// encoder's frame 0.
     pub fn ready(&self) -> Rig {
         self.on(self.measured())
     }
 }
 
-/// Whether sampled levels, from the first HIGH on, are an answer of so many bits without alarm, with a right CRC and this level behind it.
+/// True if sampled levels, from the first HIGH on, form an answer of `answer_bits` bits without alarm, with a right CRC and the level `behind` after it.
 pub fn believes(levels: &[bool], answer_bits: u32, f2: bool, behind: bool) -> bool {
     let start = levels.iter().position(|level| *level);
     let answer = &levels[start.unwrap_or(levels.len())..];
@@ -178,7 +178,7 @@ pub fn believes(levels: &[bool], answer_bits: u32, f2: bool, behind: bool) -> bo
     no_alarm && crc5(answer[1..covered_end].iter().copied()) == crc
 }
 
-/// Runs until the channel is idle and the latest samples have been looked up.
+/// Runs until the channel is idle and the latest samples have been evaluated.
 pub fn settle(rig: &mut Rig) {
     assert!(
         rig.run_until_done(FRAME_LIMIT, |b| b.get("busy") == 0),
@@ -194,7 +194,7 @@ pub fn any_frame(rig: &mut Rig) -> ChannelResult {
 /// Triggers a frame, which must be good and bring the encoder's position.
 pub fn good_frame(rig: &mut Rig) -> ChannelResult {
     let result = any_frame(rig);
-    let frame = rig.frames(0).last().expect("the encoder saw a frame");
+    let frame = rig.frames(0).last().expect("the encoder received a frame");
     assert_eq!(
         (result.cause_name(), result.fresh, result.position_valid),
         ("none", true, true),
@@ -213,7 +213,7 @@ pub fn crc_sent(frame: &FrameLog) -> u64 {
     (0..CRC_BITS).fold(0, |crc, i| crc << 1 | bit(i))
 }
 
-/// Asserts that all frames so far were good and by the rules. The channel must be idle.
+/// Checks that all frames so far were good and followed the rules. The channel must be idle.
 pub fn assert_sound(setup: &Setup, rig: &Rig) {
     let case = Case {
         features: setup.features,

@@ -2,7 +2,7 @@
 
 use endat_sim::campaign::{self, Case, RunOptions};
 
-/// All cases must be sound; the first few that are not are shown.
+/// All cases must be fault-free; the first few failing ones are printed.
 fn all_sound(cases: &[Case]) {
     let options = RunOptions {
         threads: 2,
@@ -43,7 +43,7 @@ fn every_width_rate_cable() {
     all_sound(&cases);
 }
 
-/// The quick relative of `random::lines_and_encoders_within_their_limits_give_good_frames`, too.
+/// Also the quick variant of `random::lines_and_encoders_within_their_limits_give_good_frames`.
 #[test]
 fn random_lines_and_encoders() {
     all_sound(&campaign::random(120, 1));

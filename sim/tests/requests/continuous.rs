@@ -1,4 +1,4 @@
-//! Continuous clock: one position after the other without a command, and the ways out.
+//! Continuous clock: consecutive positions without a command, and its ends.
 
 use super::rig::Rig;
 use endat_hdl::endat::{channel::TIMESTAMP_TO_FIRST_FALL_CYCLES, transaction::cause};
@@ -33,7 +33,7 @@ fn rig(endat_hz: u64, encoder: EncoderConfig, line: LineConfig) -> Rig {
     rig
 }
 
-/// Triggers once, and runs until `frames` more results are there.
+/// Triggers once, and runs until `frames` more results have arrived.
 fn run(rig: &mut Rig, frames: usize) {
     let results = rig.bench.results().len() + frames;
     rig.bench.trigger();
@@ -51,7 +51,7 @@ fn leave(rig: &mut Rig) {
     assert!(rig.bench.run_until_done(5 * MS, |b| b.get("busy") == 0));
 }
 
-/// Every result has the position of its frame, and the time when the encoder took it.
+/// Every result has the position of its frame, and the time when the encoder latched it.
 fn assert_right(rig: &Rig, endat_hz: u64) {
     let flight = rig.bench.link(0).line().config();
     let flight = flight.flight() + flight.clock.transceivers;
@@ -64,7 +64,7 @@ fn assert_right(rig: &Rig, endat_hz: u64) {
         );
         assert_eq!(frame.end, FrameEnd::Complete);
         let stamp = result.first_fall_timestamp + TIMESTAMP_TO_FIRST_FALL_CYCLES;
-        // The sources differ in the edge; the time stamp is that of the later one.
+        // The sources differ in the edge; the time stamp uses the later one.
         let early = match rig.bench.link(0).encoder().config().continuous {
             Some(LatchEdge::InHigh) if frame.continuous => 1_000_000_000_000 / endat_hz,
             _ => 0,
@@ -134,7 +134,7 @@ fn triggers_neither_disturb_a_run_nor_count_as_lost() {
     rig.assert_clean();
 }
 
-/// The encoder is left at whatever moment; the next frame is good.
+/// The run ends at any time; the next frame is good.
 fn left_every(step_ns: usize) {
     for edge in EDGES {
         for wait in (0..40_000).step_by(step_ns) {
@@ -175,7 +175,7 @@ fn run_that_is_left_reports_no_recovery_time_of_an_earlier_frame() {
     leave(&mut rig);
     let causes: Vec<u64> = rig.bench.results().iter().map(|r| r.last_cause()).collect();
     assert_eq!(causes, vec![cause::NONE; causes.len()]);
-    // The limit holds for a frame that has a recovery time.
+    // The limit applies to a frame with a recovery time.
     assert_eq!(rig.position().cause, cause::RECOVERY_TOO_SHORT);
 }
 
@@ -229,7 +229,7 @@ fn after_an_error_it_goes_on_or_stops_as_configured() {
     }
 }
 
-/// However many errors follow each other: only `stop_at_error` ends a run.
+/// Any number of consecutive errors: only `stop_at_error` ends a run.
 #[test]
 fn errors_in_a_row_end_a_run_only_if_it_stops_at_errors() {
     for frames in [3..=4, 3..=5, 3..=12] {
@@ -264,7 +264,7 @@ fn what_cannot_go_on_is_flagged_and_the_next_trigger_works() {
     for (defect, expected) in [
         (Defect::NoStartBit, cause::NO_START_BIT),
         (Defect::Open, cause::DATA_NOT_FALLING),
-        // The cells between two answers tell that the encoder has another width.
+        // The cells between two answers show that the encoder has another width.
         (Defect::WiderBy(15), cause::DATA_NOT_FALLING),
     ] {
         let encoder = encoder(29, LatchEdge::AfterLow)
@@ -279,12 +279,12 @@ fn what_cannot_go_on_is_flagged_and_the_next_trigger_works() {
         let last = rig.bench.results().last().unwrap().clone();
         let causes = [expected, cause::CRC];
         assert!(causes.contains(&last.last_cause()), "{defect:?} {last:?}");
-        // The last good position stays.
+        // The last good position remains.
         assert_eq!(
             [rig.bench.get("position_valid"), rig.bench.get("fresh")],
             [1, 0]
         );
-        // The delay is measured again, and the run goes on.
+        // The delay is measured again, and the run continues.
         run(&mut rig, 3);
         assert!(rig.last_frame().continuous, "{defect:?}");
         let last = rig.bench.results().last().unwrap();
@@ -293,7 +293,7 @@ fn what_cannot_go_on_is_flagged_and_the_next_trigger_works() {
     }
 }
 
-/// An encoder that does not know the mode stays HIGH for tm: it is noticed at the second cell, and its position is good.
+/// An encoder without this mode stays HIGH for tm: the second cell shows it, and its position is good.
 #[test]
 fn an_encoder_without_the_mode_is_noticed() {
     let mut rig = rig(

@@ -1,4 +1,4 @@
-//! What is wrong with a line or an encoder, told apart, within its limit and at every phase of a frame.
+//! Faults of a line or an encoder are distinguished, within their limits and at every phase of a frame.
 
 use super::rig::Rig;
 use endat_hdl::endat::{
@@ -17,11 +17,11 @@ use endat_sim::{
 const SYSTEM_HZ: u64 = 100_000_000;
 const ENDAT_HZ: u64 = 2_000_000;
 const HALF: Time = 250 * NS;
-/// When the frame begins in which something happens.
+/// Start of the frame with the fault.
 const FRAME: Time = 500 * US;
-/// How long something is wrong after it.
+/// Duration of the fault after it.
 const WRONG: Time = 900 * US;
-/// Longer than it takes, up to the end of its recovery time.
+/// More than a frame with its recovery time.
 const FRAME_LENGTH: Time = 70 * US;
 
 fn settings() -> ChannelSettings {
@@ -42,7 +42,7 @@ fn encoder() -> EncoderConfig {
     EncoderConfig::endat22(29)
 }
 
-/// A frame that is no good one; what became of it.
+/// A frame that must not be good; returns its result.
 fn bad(rig: &mut Rig) -> ChannelResult {
     let over = rig.position();
     let result = rig.bench.results().last().unwrap().clone();
@@ -51,7 +51,7 @@ fn bad(rig: &mut Rig) -> ChannelResult {
     result
 }
 
-/// The first good position, after at most two frames that are none.
+/// The first good position, after at most two bad frames.
 fn recovers(rig: &mut Rig) {
     for _ in 0..2 {
         let over = rig.position();
@@ -71,7 +71,7 @@ fn late_start_bits(step: usize) {
         );
         let begin = rig.bench.now();
         let result = bad(&mut rig);
-        // The result comes at the limit, whatever the encoder does later.
+        // The result comes at the limit, independent of the encoder.
         let took = result.time - begin;
         assert!((limit * US..(limit + 12) * US).contains(&took), "{took}");
         assert_eq!(result.cause, cause::NO_START_BIT);
@@ -100,7 +100,7 @@ fn late_start_bit_at_any_delay_has_another_cause_than_silence() {
     late_start_bits(1);
 }
 
-/// So many half clock periods apart in the quick tests: odd, for both levels of CLOCK.
+/// Step of the quick tests in half clock periods: odd, for both levels of CLOCK.
 const SOME: usize = 41;
 
 /// Every `step`th half clock period of a frame.
@@ -127,7 +127,7 @@ fn stuck_every(step: usize) {
                 !result.fresh || right || over.cause != cause::NONE,
                 "{from}: {over:?}"
             );
-            // From the next frame on it is known.
+            // Detected from the next frame on.
             let expected = match level {
                 false => cause::STUCK_LOW,
                 true => cause::STUCK_HIGH,
@@ -177,7 +177,7 @@ fn unplugged_every(step: usize) {
             flag(cause::NO_ENCODER) | flag(cause::DATA_NOT_LOW)
         );
         assert!(result.time - begin < US, "at once");
-        // The pause of an aborted frame, and the look at the line.
+        // The pause of an aborted frame, and the line probe.
         let pause = rig.bench.now() - begin;
         let least = (ABORT_US + SETTLE_US) * US;
         assert!(
@@ -225,7 +225,7 @@ fn watchdog(limits_us: impl Iterator<Item = u64>) {
         );
         rig.bench.run_cycles(4);
         assert_eq!(rig.bench.get("data_oe"), 0);
-        // A low phase that has begun is finished.
+        // A low phase that has begun is completed.
         rig.bench.run_until(rig.bench.now() + HALF);
         assert_eq!(rig.bench.get("endat_clk"), 1);
         assert_eq!(rig.bench.violations(0), []);
@@ -247,7 +247,7 @@ fn the_watchdog_ends_a_frame_wherever_it_is() {
     watchdog(1..80);
 }
 
-/// Reset, and both that read and write a parameter: as ArtInChip's ENDAT-IF.
+/// Reset, and the two commands that read and write a parameter: as in ArtInChip's ENDAT-IF.
 #[test]
 fn the_watchdog_leaves_three_commands_alone() {
     for (command, address, data) in [
@@ -267,7 +267,7 @@ fn the_watchdog_leaves_three_commands_alone() {
     }
 }
 
-/// Between 4.1 and 8.2 ms the frame's own limit would have been met in the cycle in which the start bit comes.
+/// Between 4.1 and 8.2 ms the frame's limit would be reached in the cycle of the start bit.
 #[test]
 fn an_answer_with_a_parameter_is_taken_after_any_access_time() {
     for ms in [5, 8, 12] {
@@ -307,7 +307,7 @@ fn a_recovery_time_outside_its_range_is_flagged_and_the_position_stays() {
         let result = rig.bench.results().last().unwrap();
         assert!(result.fresh && result.position == rig.last_frame().position);
         let measured = rig.bench.get("recovery_cycles") as u64 * 10;
-        // Seven cycles: edges are seen a filter later, and the tail is where the delay was rounded to.
+        // Tolerance of seven cycles: the filter delays edges, and the tail is at the rounded delay.
         assert!(measured.abs_diff(tm_ns) <= 70, "{measured} ns for {tm_ns}");
         match tm_ns {
             ..9_340 => assert_eq!(over.cause, cause::RECOVERY_TOO_SHORT, "{tm_ns}"),
@@ -316,7 +316,7 @@ fn a_recovery_time_outside_its_range_is_flagged_and_the_position_stays() {
     }
 }
 
-/// With the short range set, EnDat 2.1 commands still have the long one.
+/// With the short range selected, EnDat 2.1 commands still have the long one.
 #[test]
 fn a_request_has_the_range_of_its_command() {
     let mut encoder = encoder();
@@ -354,7 +354,7 @@ fn an_echo_of_the_own_command_is_no_answer() {
     }
 }
 
-/// docs/programming.md lists these causes for a card that is wired wrongly or configured for another encoder.
+/// docs/programming.md lists these causes for a card with wrong wiring or configured for another encoder.
 fn wrong_wiring_and_widths(widths: impl Iterator<Item = u32>) {
     for (kind, expected) in [
         (FaultKind::Swapped, cause::NO_ENCODER),

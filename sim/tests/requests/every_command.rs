@@ -8,7 +8,7 @@ use endat_sim::{
     US,
 };
 
-/// An encoder that makes nobody wait.
+/// An encoder with short times.
 fn quick(position_bits: u32, endat_hz: u64) -> EncoderConfig {
     let mut config = EncoderConfig::endat22(position_bits);
     config.tac = 0..=0;
@@ -21,7 +21,7 @@ fn quick(position_bits: u32, endat_hz: u64) -> EncoderConfig {
     config
 }
 
-/// What goes with a command so that the encoder has nothing to refuse.
+/// Address for a command that the encoder accepts.
 fn address(command: ModeCommand) -> u8 {
     match command {
         SelectMemory | PositionSelectMemory => area::OPERATING_PARAMETERS,
@@ -117,7 +117,7 @@ fn every_width_at_16_mhz() {
     all(128_000_000, 16_000_000);
 }
 
-/// Behind 0xBF the encoder waits for a block address, which only the command with a frame of its own has room for.
+/// After 0xBF the encoder waits for a block address, which only the separate frame has room for.
 #[test]
 fn section_2_is_selected_with_a_frame_of_its_own() {
     let mut rig = Rig::new(16_000_000, 2_000_000, quick(25, 2_000_000), 10.0);
@@ -135,7 +135,7 @@ fn section_2_is_selected_with_a_frame_of_its_own() {
     assert_eq!(over.cause, cause::NO_START_BIT, "there are four");
     rig.good_position();
     rig.good_position();
-    // As a supplement it is too short: the encoder takes nothing, and only it knows. The position is good.
+    // As a supplement it is too short: the encoder ignores it, without a report. The position is good.
     let over = rig.ride(PositionSelectMemory, area::SECTION_2, 0);
     assert_eq!(over.cause, cause::NONE);
     assert_eq!(rig.last_frame().end, FrameEnd::Stopped);

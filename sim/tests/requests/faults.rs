@@ -20,14 +20,14 @@ const ANSWER: u32 = POSITION_ANSWER + 60;
 const PULSES: u32 = 10 + ANSWER + 35;
 /// The longest frame, twice the limit of the start bit, the longest recovery time, the pause of an aborted frame, a look at an open line.
 const LIMIT_US: u64 = 80 + 2 * 50 + 35 + ABORT_US + PROBE_US + SETTLE_US;
-/// Triggers after a fault until two in a row are good: one measures the delay, two find out about additional data.
+/// Triggers after a fault until two in a row are good: one measures the delay, two resynchronise the additional data.
 const TRIGGERS: usize = 3;
 
 struct Fault {
     what: String,
     encoder: EncoderConfig,
     line: LineConfig,
-    /// How long after the frame it lasts.
+    /// Duration after the frame.
     lasts: Time,
 }
 
@@ -47,10 +47,10 @@ fn places() -> impl Iterator<Item = Time> {
         .take_while(|t| *t < FRAME_TIME + RECOVERY)
 }
 
-/// So many places apart in the quick tests.
+/// Step of the quick tests, in places.
 const SOME: usize = 9;
 
-/// Every `step`th of the faults, and the bounds of how many are good and bad for as many.
+/// Every `step`th of the faults, with the minimum numbers of good and bad results for all.
 fn run_some(faults: Vec<Fault>, step: usize, [good_min, bad_min]: [usize; 2]) {
     let some: Vec<Fault> = faults.into_iter().step_by(step).collect();
     let [good, bad, _] = run(&some);
@@ -60,7 +60,7 @@ fn run_some(faults: Vec<Fault>, step: usize, [good_min, bad_min]: [usize; 2]) {
     );
 }
 
-/// Runs the frame with its fault, then triggers until all is well again. Gives good and bad results, and wrong ones with a right CRC.
+/// Runs the frame with its fault, then triggers until everything is good again. Returns good and bad results, and wrong ones with a right CRC.
 fn run(faults: &[Fault]) -> [usize; 3] {
     let mut counts = [0; 3];
     for faults in faults.chunks(LANES) {
@@ -78,7 +78,7 @@ fn run(faults: &[Fault]) -> [usize; 3] {
         let busy = rig.idle(LIMIT_US);
         assert!(busy.is_empty(), "busy: {}", what(busy[0]));
         rig.run_for(30 * US + faults.iter().map(|f| f.lasts).max().unwrap_or(0));
-        // A disturbed line may have made the channel leave its rest again.
+        // A disturbed line may have made the channel leave its idle state again.
         rig.settle(LIMIT_US);
         rig.bench.finish_samples();
         for (lane, before) in before.iter().enumerate() {
@@ -136,7 +136,7 @@ fn stuck_or_open(step: usize) {
             ]
         })
         .collect();
-    // A fault after the position does not spoil it.
+    // A fault after the position does not affect it.
     run_some(faults, step, [3 * 60, 41]);
 }
 

@@ -1,4 +1,4 @@
-//! Additional data: errors in it, and a record that finds the truth again.
+//! Errors in additional data, and a record that resynchronises.
 
 use super::rig::Rig;
 use endat_hdl::endat::transaction::cause;
@@ -37,7 +37,7 @@ fn an_error_in_one_block_of_additional_data_spoils_neither_the_position_nor_the_
     }
 }
 
-/// The encoder is exchanged between two frames: its additional data are off, and the card does not know.
+/// The encoder is replaced between two frames: its additional data are off, and the card has no information about it.
 #[test]
 fn additional_data_that_are_gone_are_forgotten_with_the_first_frame() {
     for codes in [&[0x4C][..], &[0x5B], &[0x4C, 0x5B]] {
@@ -59,7 +59,7 @@ fn additional_data_that_are_gone_are_forgotten_with_the_first_frame() {
     }
 }
 
-/// The core is reset, the encoder is not: it sends what the core does not expect.
+/// The core is reset, the encoder is not: it sends unexpected additional data.
 #[test]
 fn additional_data_that_nobody_expects_are_found_out() {
     for (codes, frames) in [(&[0x4C][..], 2), (&[0x5B], 2), (&[0x4C, 0x5B], 1)] {
@@ -93,14 +93,14 @@ fn switching_off_and_the_reset_end_them() {
     rig.assert_clean();
 }
 
-/// A supplement that never goes out selects nothing.
+/// A supplement that is not sent selects nothing.
 #[test]
 fn a_frame_that_is_given_up_selects_nothing() {
     let mut rig = rig(EncoderConfig::endat22(29).defect(2, Defect::NoStartBit));
     let over = rig.ride(PositionSelectMemory, 0x4C, 0);
     assert_eq!(over.cause, cause::NO_START_BIT);
     assert_eq!(rig.bench.get("info_active"), 0);
-    // What measures the delay again takes no request along, the frame behind it does.
+    // A frame that measures the delay again carries no request; the frame after it does.
     let over = rig.ride(PositionSelectMemory, 0x4C, 0);
     assert_eq!((over.cause, over.is_request), (cause::NONE, false));
     assert_eq!(rig.last_frame().command, Some(PositionSelectMemory.code()));

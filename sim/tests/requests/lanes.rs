@@ -1,4 +1,4 @@
-//! Channels with requests side by side, each with an encoder, a line and a mishap of its own, in the longest frame that there is:
+//! Channels with requests in parallel, each with another encoder, line and fault, in the longest frame:
 //! additional data 1 and 2 and a supplement.
 
 use endat_hdl::endat::{
@@ -22,18 +22,18 @@ pub const SYSTEM_HZ: u64 = 16_000_000;
 pub const ENDAT_HZ: u64 = 2_000_000;
 pub const HALF_PERIOD: Time = 250 * NS;
 pub const POSITION_BITS: u32 = 13;
-/// The frame that the mishap is for, as the encoder counts.
+/// The frame with the fault, as counted by the encoder.
 pub const FRAME: u64 = 4;
 /// First falling to last rising clock edge of that frame: tST, then 10 pulses to the start bit, 21 bits, 60 of the additional data, the
 /// park time, 35 pulses.
 pub const FRAME_TIME: Time = 67_500 * NS;
 /// Its recovery time.
 pub const RECOVERY: Time = 12 * US;
-/// When its trigger comes.
+/// Cycle of its trigger.
 const TRIGGER_CYCLE: u64 = 16_000;
 /// Longest answer to a command with a parameter.
 const PARAMETER_TIMEOUT_US: u64 = 200;
-/// Longer than any part of a frame, at the calibration clock too.
+/// More than any part of a frame, also at the calibration clock.
 pub const FRAME_US: u64 = 512;
 
 pub fn design() -> Design {
@@ -55,7 +55,7 @@ pub fn engine() -> Lanes {
     MADE.get_or_init(make).clone()
 }
 
-/// An encoder that makes nobody wait.
+/// An encoder with short times.
 pub fn encoder() -> EncoderConfig {
     let mut encoder = EncoderConfig::endat22(POSITION_BITS);
     encoder.tm = 10 * US..=RECOVERY;
@@ -79,12 +79,12 @@ pub struct Rig {
     pub bench: LaneBench,
     /// Lanes with a case; the others repeat the first one.
     pub used: usize,
-    /// Lanes that are looked at, a bit for each.
+    /// Evaluated lanes, a bit for each.
     live: [u64; 2],
 }
 
 impl Rig {
-    /// Designs in whatever state, each with an encoder and a line of its own.
+    /// Designs in any state, each with an encoder and a line.
     pub fn on(engine: Lanes, cases: &[(EncoderConfig, LineConfig)]) -> Self {
         let links = (0..LANES).map(|lane| {
             let (encoder, line) = cases.get(lane).unwrap_or(&cases[0]).clone();
@@ -105,7 +105,7 @@ impl Rig {
         self.bench.set_all("reset", 0);
     }
 
-    /// Up to the trigger of the frame that the mishap is for: line delay measured, additional data 1 and 2 selected, the supplement waiting.
+    /// Runs up to the trigger of the frame with the fault: line delay measured, additional data 1 and 2 selected, supplement pending.
     pub fn new(cases: &[(EncoderConfig, LineConfig)]) -> Self {
         let mut rig = Self::on(engine(), cases);
         rig.bench.keep_samples(|_| 2 * SAMPLE_LATENCY_CYCLES);
@@ -128,7 +128,7 @@ impl Rig {
         rig
     }
 
-    /// When the frame's first falling edge leaves the channel.
+    /// Time of the frame's first falling edge at the channel.
     pub fn trigger_time() -> Time {
         (TRIGGER_CYCLE + 3) * 1_000_000 * US / SYSTEM_HZ
     }
@@ -151,7 +151,7 @@ impl Rig {
         }
     }
 
-    /// Looks at this lane no more.
+    /// Stops evaluating this lane.
     pub fn give_up(&mut self, lane: usize) {
         self.live[lane / 64] &= !(1 << (lane % 64));
     }
@@ -164,7 +164,7 @@ impl Rig {
         [0, 1].map(|part| self.bench.busy(part) & self.live[part])
     }
 
-    /// Runs until no lane is busy. Says which ones still are, if it takes longer than `limit_us`.
+    /// Runs until no lane is busy. Returns the lanes that are still busy after `limit_us`.
     pub fn idle(&mut self, limit_us: u64) -> Vec<usize> {
         let end = self.bench.cycle() + limit_us * SYSTEM_HZ / 1_000_000;
         self.bench.tick();
@@ -199,7 +199,7 @@ impl Rig {
         frames.last().expect("a frame")
     }
 
-    /// Whether the last result is a good one, with the encoder's position.
+    /// True if the last result is good, with the encoder's position.
     pub fn is_good(&self, lane: usize) -> bool {
         let good = |r: &ChannelResult| {
             let fine = (r.last_cause(), r.fresh, r.position_valid) == (cause::NONE, true, true);
@@ -208,8 +208,8 @@ impl Rig {
         self.bench.results(lane).last().is_some_and(good)
     }
 
-    /// Triggers until every lane has had one good result for each of two triggers, at most so many times before; whatever is told as good on the way
-    /// is right. The lanes that do not get there, with what they delivered, and the most triggers that another needed.
+    /// Triggers until every lane has had one good result for each of two triggers, with a limited number of bad ones before; every position reported as good on the way
+    /// is right. Returns the failing lanes with their results, and the most triggers of the other lanes.
     pub fn recovered(
         &mut self,
         most: usize,

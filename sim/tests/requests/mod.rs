@@ -1,4 +1,4 @@
-//! All mode commands and additional data, as the channel speaks them, against the encoder and line model.
+//! All mode commands and additional data of the channel, with the encoder and line model.
 
 mod continuous;
 mod diagnosis;

@@ -1,4 +1,4 @@
-//! The record of additional data finds the truth again after any frame, whatever recovery time, calculation time and clock.
+//! The record of additional data resynchronises after any frame, for any recovery time, calculation time and clock.
 
 use super::lanes::*;
 use endat_hdl::endat::transaction::cause;
@@ -9,11 +9,11 @@ use endat_sim::{
     Time, NS, US,
 };
 
-/// A frame that measures the delay, two good ones, two selections: the next one has the mishap.
+/// A frame that measures the delay, two good ones, two selections: the next one has the fault.
 const MISHAP_FRAME: u64 = 5;
-/// Triggers after the mishap that may bring a fault.
+/// Triggers after the fault that may be bad.
 const TRIGGERS: usize = 2;
-/// Long and short recovery times, either side of half a period of the calibration clock.
+/// Long and short recovery times, around half a period of the calibration clock.
 const RECOVERIES: [Time; 11] = [
     1_250 * NS,
     1_300 * NS,
@@ -27,27 +27,27 @@ const RECOVERIES: [Time; 11] = [
     20 * US,
     30 * US,
 ];
-/// Recovery times, calculation times and EnDat clocks that are combined.
+/// Combined recovery times, calculation times and EnDat clocks.
 struct Times {
     recovery: &'static [Time],
     calculation: &'static [Time],
     endat_hz: &'static [u64],
 }
 
-/// All of the recovery times, with three calculation times at five rates.
+/// All recovery times, with three calculation times at five rates.
 const ALL: Times = Times {
     recovery: &RECOVERIES,
     calculation: &[US, 5 * US, 12 * US],
     endat_hz: &[200_000, 500_000, 1_000_000, 2_000_000, 4_000_000],
 };
-/// The shortest, the longest, and either side of half a period of the calibration clock.
+/// The shortest, the longest, and those around half a period of the calibration clock.
 const SOME: Times = Times {
     recovery: &[1_250 * NS, 2_300 * NS, 2_600 * NS, 30 * US],
     calculation: &[5 * US],
     endat_hz: &[200_000, 1_000_000, 4_000_000],
 };
 
-/// Below 10 us there are recovery times only with a clock of 1 MHz or more.
+/// Recovery times below 10 us exist only with a clock of at least 1 MHz.
 const LONG_RECOVERY: Time = 10 * US;
 
 struct Story {
@@ -56,7 +56,7 @@ struct Story {
     what: String,
 }
 
-/// Every recovery time with every calculation time and rate, and these mishaps.
+/// Every recovery time with every calculation time and rate, and these defects.
 fn stories(times: &Times, defects: &[Defect]) -> Vec<Story> {
     let mut stories = vec![];
     for &tm in times.recovery {
@@ -82,7 +82,7 @@ fn stories(times: &Times, defects: &[Defect]) -> Vec<Story> {
     stories
 }
 
-/// Runs them with these additional data selected; all are well again after the second trigger at the latest.
+/// Runs them with these additional data selected; all are good again after at most two triggers.
 fn run(times: &Times, codes: [u8; 2], defects: &[Defect]) {
     let stories = stories(times, defects);
     for stories in stories.chunks(LANES) {
@@ -126,9 +126,9 @@ fn stuck_low(bits: &[u32]) -> Vec<Defect> {
     bits.iter().map(stuck).collect()
 }
 
-/// DATA LOW in an answer looks as if additional data followed it.
+/// DATA LOW in an answer looks like additional data after it.
 fn zeros(times: &Times) {
-    // 0x4F and 0x5F: none is selected.
+    // 0x4F and 0x5F deselect.
     run(times, [0x4F, 0x5F], &stuck_low(&[1, 3, 10, 17, 20, 21]));
 }
 
@@ -143,7 +143,7 @@ fn a_frame_of_zeros_teaches_no_additional_data_at_any_recovery_time() {
     zeros(&ALL);
 }
 
-/// The encoder has forgotten its selection, and a short recovery time ends before half a period of the calibration clock does.
+/// The encoder has lost its selection, and a short recovery time ends before half a period of the calibration clock.
 fn gone(times: &Times, selections: &[[u8; 2]]) {
     let lost = Defect::BrownOut {
         after: 9 * US,
@@ -175,7 +175,7 @@ fn additional_data_that_are_gone_are_forgotten_at_any_recovery_time() {
     gone(&ALL, &SELECTIONS);
 }
 
-/// They are there all the time, and what a disturbed frame seems to say about them does not last.
+/// The additional data are always sent; wrong conclusions from a disturbed frame do not last.
 fn present(times: &Times, selections: &[[u8; 2]]) {
     for codes in selections {
         run(times, *codes, &stuck_low(&[2, 18, 21, 22, 40, 51]));

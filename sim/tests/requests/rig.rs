@@ -21,10 +21,10 @@ use std::{
     sync::{Mutex, OnceLock, PoisonError},
 };
 
-/// Longer than any frame with its time-outs.
+/// More than any frame with its time-outs.
 const FRAME_LIMIT: Time = 80 * MS;
 
-/// The times that are fixed in the channels of these tests.
+/// The fixed times of the channels in these tests.
 pub fn fixed_times(system_hz: u64) -> FixedTimes {
     FixedTimes {
         abort_us: ABORT_US,
@@ -32,7 +32,7 @@ pub fn fixed_times(system_hz: u64) -> FixedTimes {
     }
 }
 
-/// A channel after power-up. The design is made once for each system clock.
+/// A channel after power-up. The design is elaborated once for each system clock.
 fn engine(system_hz: u64) -> Compiled {
     static MADE: OnceLock<Mutex<BTreeMap<u64, Compiled>>> = OnceLock::new();
     let mut made = MADE
@@ -48,18 +48,18 @@ fn engine(system_hz: u64) -> Compiled {
     made.entry(system_hz).or_insert_with(make).clone()
 }
 
-/// How a frame ended.
+/// End of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Over {
-    /// It had the request.
+    /// The frame carried the request.
     pub is_request: bool,
     /// Primary cause.
     pub cause: u64,
     /// Raw flags.
     pub flags: u64,
-    /// The answer, for requests with a frame of their own.
+    /// The answer, for separate request frames.
     pub reply: u64,
-    /// Its CRC.
+    /// The CRC of the answer is right.
     pub reply_good: bool,
 }
 
@@ -142,13 +142,13 @@ impl Rig {
         self.position()
     }
 
-    /// A request with a frame of its own.
+    /// A request with a separate frame.
     pub fn own(&mut self, command: ModeCommand, address: u8, data: u16) -> Over {
         self.put(command, address, data, "request_own");
         self.over()
     }
 
-    /// A request in the way that its command needs.
+    /// A request in the form that its command needs.
     pub fn request(&mut self, command: ModeCommand, address: u8, data: u16) -> Over {
         match command.has_f2() {
             true => self.ride(command, address, data),
@@ -156,7 +156,7 @@ impl Rig {
         }
     }
 
-    /// A request that must succeed by all rules; what the encoder noted.
+    /// A request that must succeed and follow all rules; returns the encoder's log.
     pub fn good(&mut self, command: ModeCommand, address: u8, data: u16) -> FrameLog {
         let over = self.request(command, address, data);
         let frame = self.last_frame();
@@ -185,7 +185,7 @@ impl Rig {
         frame
     }
 
-    /// A triggered frame that must succeed by all rules.
+    /// A triggered frame that must succeed and follow all rules.
     pub fn good_position(&mut self) -> FrameLog {
         let over = self.position();
         let frame = self.last_frame();
@@ -194,7 +194,7 @@ impl Rig {
         frame
     }
 
-    /// The frame is complete, with its exact pulses, and position and additional data are those of the encoder.
+    /// The frame is complete, with its exact pulses; position and additional data are those of the encoder.
     fn assert_whole(&mut self, frame: &FrameLog) {
         assert_eq!(frame.end, FrameEnd::Complete, "{frame:?}");
         assert_eq!(
@@ -212,7 +212,7 @@ impl Rig {
             assert_eq!(
                 came,
                 self.bench.get("info_good"),
-                "all that came is good: {frame:?}"
+                "all received blocks are good: {frame:?}"
             );
             assert_eq!(frame.infos.len() as u32, came.count_ones(), "{frame:?}");
             for (info, _) in &frame.infos {
@@ -227,16 +227,16 @@ impl Rig {
         }
     }
 
-    /// The last frame as the encoder saw it.
+    /// The last frame, as seen by the encoder.
     pub fn last_frame(&self) -> FrameLog {
         self.bench
             .frames(0)
             .last()
-            .expect("the encoder saw a frame")
+            .expect("the encoder received a frame")
             .clone()
     }
 
-    /// Nothing that the encoder could complain of has happened.
+    /// The encoder has noted no violation.
     pub fn assert_clean(&self) {
         assert_eq!(self.bench.violations(0), []);
         assert_eq!(self.bench.conflicts(0), []);

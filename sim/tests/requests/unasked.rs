@@ -1,4 +1,4 @@
-//! What nobody has asked for is not sent.
+//! Nothing is sent without a request.
 
 use super::rig::{fixed_times, Rig};
 use endat_hdl::endat::{
@@ -19,7 +19,7 @@ use rust_hdl::prelude::Block;
 const SYSTEM_HZ: u64 = 32_000_000;
 const ENDAT_HZ: u64 = 4_000_000;
 
-/// A host may write any command to the configuration. The answer to most of them is no position, and some change the encoder.
+/// A host may write any command to the configuration. Most of them have no position in the answer, and some change the encoder.
 #[test]
 fn a_trigger_sends_no_other_command_than_those_for_a_position() {
     let mut rig = Rig::new(SYSTEM_HZ, ENDAT_HZ, EncoderConfig::endat22(25), 20.0);
@@ -41,7 +41,7 @@ fn a_trigger_sends_no_other_command_than_those_for_a_position() {
     }
     assert_eq!(rig.bench.frames(0).len(), frames);
     rig.assert_clean();
-    // Nor on a request that is to ride on it: an answer without a position would pass for one.
+    // Nor with a request on its frame: an answer without a position could pass for one.
     rig.bench
         .set("command", ModeCommand::SendPositionAddInfo.code().into());
     rig.bench.run_cycles(4);
@@ -51,12 +51,12 @@ fn a_trigger_sends_no_other_command_than_those_for_a_position() {
         let over = rig.ride(command, 0, 0);
         let told = (cause::name(over.cause), over.is_request);
         assert_eq!(told, ("unknown mode command", true), "{command:?}");
-        // And it is forgotten.
+        // The request is dropped.
         rig.bench.run_cycles(4);
         rig.good_position();
     }
     assert_eq!(rig.bench.frames(0).len(), frames + others.len());
-    // With a request it goes out as ever.
+    // A separate request frame still works.
     rig.bench
         .set("command", ModeCommand::SendPositionAddInfo.code().into());
     rig.good(
@@ -67,7 +67,7 @@ fn a_trigger_sends_no_other_command_than_those_for_a_position() {
     rig.good(ModeCommand::SendTestValues, 0, 0);
 }
 
-/// One flip-flop that is inverted sends no request, the last one once more neither, and no clock goes on that was not to.
+/// A single inverted flip-flop sends no request, repeats none, and starts no continuous clock.
 #[test]
 fn one_upset_begins_nothing() {
     let features = Features {

@@ -1,4 +1,4 @@
-//! Every state that a channel with requests can be brought into, reached or not: a new trigger works, nothing hangs.
+//! Any state of a channel with requests, reachable or not: a new trigger works, nothing hangs.
 
 use super::lanes::*;
 use endat_sim::{rng::Rng, US};
@@ -6,9 +6,9 @@ use rtl_design::engine::{Compiled, Keep};
 
 /// Registers up to this width get every value, wider ones have each of their bits inverted.
 const ALL_VALUES_BITS: usize = 6;
-/// Moments of the frame at which each of them is upset in the slow test.
+/// Times of the frame at which each of them is upset in the slow test.
 const MOMENTS: u64 = 16;
-/// The longest wait of a frame that is upset: half a period that is counted round, twice.
+/// The longest wait of an upset frame: half a period after a wrap, twice.
 const LIMIT_US: u64 = 1_000;
 /// Triggers until two in a row are good.
 const TRIGGERS: usize = 2;
@@ -20,10 +20,10 @@ struct Upset {
     what: String,
 }
 
-/// A timer that has been taken past its limit comes back to it after 2^16 microseconds.
+/// A timer set past its limit reaches it again after 2^16 microseconds.
 const TIMER_US: u64 = 66_000;
 
-/// Every value of every register at every moment; or each value at one moment, another one for each.
+/// Every value of every register at every time; or each value at one time that varies.
 fn upsets(all_moments: bool) -> Vec<Upset> {
     let engine = Compiled::keeping(&design(), Keep::Registers).unwrap();
     let names: Vec<&str> = engine.nets().collect();
@@ -57,7 +57,7 @@ fn upsets(all_moments: bool) -> Vec<Upset> {
     upsets
 }
 
-/// Runs the frame with these upsets. Gives the rig, idle again, and what became of the lanes that are not.
+/// Runs the frame with these upsets. Returns the idle rig, and descriptions of the failing lanes.
 fn upset(upsets: &[Upset]) -> (Rig, Vec<String>) {
     let mut rig = Rig::new(&vec![(encoder(), line()); upsets.len()]);
     rig.trigger();
@@ -75,7 +75,7 @@ fn upset(upsets: &[Upset]) -> (Rig, Vec<String>) {
         hung = rig.idle(TIMER_US);
     }
     hung.iter().for_each(|lane| rig.give_up(*lane));
-    // The encoder may have to see that the clock has stopped.
+    // The encoder may have to detect that the clock has stopped.
     rig.run_for(40 * US);
     rig.settle(LIMIT_US);
     (

@@ -43,7 +43,7 @@ fn every_code_of_the_list_has_its_slot_and_age() {
         assert!(age < 3, "slot {i} is {age} frames old");
     }
     let fresh = rig.bench.results().iter().all(|r| r.cause == 0 && r.fresh);
-    assert!(fresh, "no position suffers");
+    assert!(fresh, "no position is affected");
     // Requests of the host come in between.
     rig.good(PositionSelectMemory, 0xA1, 0);
     rig.frames(8);
@@ -134,7 +134,7 @@ fn a_wrong_crc_of_additional_data_is_told_and_counted_and_nothing_of_them_is_tak
             let status = rig.read(word::INFO_STATUS);
             let is_bad = status & bit != 0;
             assert_eq!(status & 0x0100_0100, if is_bad { bit } else { 0 });
-            assert_eq!(status & !bit, good, "what came before stays");
+            assert_eq!(status & !bit, good, "the earlier bits remain");
             told += u32::from(is_bad);
             assert_eq!(rig.read(word::COUNTERS + COUNTER_BAD_INFOS), told);
             assert_eq!(
@@ -142,7 +142,7 @@ fn a_wrong_crc_of_additional_data_is_told_and_counted_and_nothing_of_them_is_tak
                 is_bad,
                 "its slot is as old as before"
             );
-            assert_ne!(rig.read(other), before.1, "the other one is taken");
+            assert_ne!(rig.read(other), before.1, "the other one is updated");
             assert_eq!(rig.read(word::BAD_FRAMES), 0, "the position is good");
         }
         assert_eq!(told, 2);

@@ -1,4 +1,4 @@
-//! Initialisation: every device from nothing, what fails, and what happens after a plug.
+//! Initialisation: every device from power-up, failures, and a plug.
 
 use super::rig::{hasty, quick, Make, Rig, ENDAT_HZ, SYSTEM_HZ};
 use endat_hdl::endat::service::{
@@ -13,7 +13,7 @@ use endat_sim::{
     MS,
 };
 
-/// What the step of this number does.
+/// Description of the step with this number.
 fn step(number: u32) -> String {
     match number {
         0 => "none".into(),
@@ -21,7 +21,7 @@ fn step(number: u32) -> String {
     }
 }
 
-/// The pulse of the power-up sequence looks like the beginning of a frame to an encoder that is there already.
+/// For an encoder that is already connected, the pulse of the power-up sequence looks like the start of a frame.
 fn assert_only_the_pulse(rig: &Rig) {
     let other = |v: &&(u64, Violation)| !matches!(v.1, Violation::StoppedBeforeAnswer { seen: 1 });
     let others: Vec<_> = rig.bench.violations(0).iter().filter(other).collect();
@@ -29,7 +29,7 @@ fn assert_only_the_pulse(rig: &Rig) {
     assert_eq!(rig.bench.conflicts(0), []);
 }
 
-/// A port that initialises an encoder of 25 bits soon.
+/// A port that initialises an encoder of 25 bits quickly.
 fn hasty_rig(encoder: EncoderConfig) -> Rig {
     Rig::with(Make::hasty(), ENDAT_HZ, hasty(encoder), 25)
 }
@@ -78,7 +78,7 @@ fn every_device_is_found_from_nothing() {
     are_found(DEVICES.iter());
 }
 
-/// Catches triggers that are let through before the last step: after the wait for a reset, for example.
+/// Catches triggers that are accepted before the last step, for example after the wait for a reset.
 #[test]
 fn no_trigger_disturbs_it() {
     let mut rig = Rig::new(true, quick(EncoderConfig::endat22(25)), 25);
@@ -107,7 +107,7 @@ fn a_failed_step_is_told_and_positions_go_on_as_configured() {
     assert!(!rig.is_initialised());
     rig.good_position();
 
-    // Two failures of each step are forgiven, and one round of all of them.
+    // Two failures of each step are tolerated, and one failed round of all steps.
     for defects in [3..=4, 3..=5, 13..=15] {
         let shaky = EncoderConfig::endat22(25).defects(defects, Defect::CrcXor(1));
         let mut rig = hasty_rig(shaky);
@@ -149,7 +149,7 @@ fn recovery_is_set_as_wanted() {
     }
 }
 
-/// Word 3 of the operating status has other functions beside the recovery time: they stay, and the name plate has the word as it is now.
+/// Word 3 of the operating status has other functions in addition to the recovery time: they are kept, and the name plate has the updated word.
 fn other_functions_are_kept(all_found: &[u16]) {
     for (short, set) in [(true, SHORT_RECOVERY), (false, LONG_RECOVERY)] {
         for &found in all_found {

@@ -1,4 +1,4 @@
-//! What the host sets in a frame's limits and in the continuous clock.
+//! Host settings for the limits of a frame and for the continuous clock.
 
 use super::rig::{hasty, quick, Make, Rig, SYSTEM_HZ};
 use endat_hdl::endat::{
@@ -37,7 +37,7 @@ fn the_shortest_recovery_time_is_that_of_the_range_in_use() {
         };
         let mut rig = Rig::with(make, 2_000_000, quick(EncoderConfig::endat22(25)), 25);
         assert_eq!(recovery_min(&mut rig), of_range(wanted));
-        // An encoder that knows EnDat 2.1 only, or only a slow clock, has the long range.
+        // An encoder with EnDat 2.1 only, or with only a slow clock, has the long range.
         for (encoder, ns) in [
             (EncoderConfig::endat22(25), wanted),
             (EncoderConfig::endat21(25), RECOVERY_MIN_NS),
@@ -59,16 +59,16 @@ fn a_hasty_encoder_is_counted_and_its_positions_are_good() {
     let mut encoder = quick(EncoderConfig::endat22(25));
     encoder.tm = 5 * US..=5 * US;
     let mut rig = Rig::new(false, encoder, 25);
-    // The first trigger's frame measures the delay, and takes longer than the time between two triggers.
+    // The first trigger's frame measures the delay, and takes longer than the trigger period.
     rig.frames(3);
     let before = count(&mut rig, cause::RECOVERY_TOO_SHORT);
     rig.frames(5);
     assert_eq!(count(&mut rig, cause::RECOVERY_TOO_SHORT), before + 5);
     assert!(rig.bench.results().iter().all(|r| r.fresh));
-    // A request is answered all the same.
+    // A request still gets an answer.
     assert_eq!(rig.request(SelectMemory, 0xA1, 0).0, 0);
     rig.write(word::LIMITS, 0);
-    // It counts from the next frame on that begins after the program has seen it.
+    // It applies from the first frame that begins after the program has read it.
     rig.bench.run_cycles(20_000);
     let before = count(&mut rig, cause::NONE);
     rig.frames(5);
@@ -81,7 +81,7 @@ fn the_watchdog_is_set_by_the_host() {
     rig.good_position();
     let off = rig.read(word::LIMITS);
     rig.write(word::LIMITS, off | 20);
-    // It counts from the next frame on that begins after the program has seen it.
+    // It applies from the first frame that begins after the program has read it.
     rig.bench.run_cycles(20_000);
     rig.frames(3);
     assert_eq!(count(&mut rig, cause::WATCHDOG), 3);
@@ -103,13 +103,13 @@ fn positions_flow_from_the_host_s_word_on() {
     rig.bench.run_for(2 * MS);
     let results = rig.bench.results().len() as u32;
     assert!(results > 40, "{results}");
-    // Each position is counted once, the spoilt one with its cause, and the frame that measured the delay.
+    // Each position is counted once, the corrupted one with its cause, and so is the frame that measured the delay.
     let counted: u32 = (0..COUNTER_POSITION_2)
         .map(|c| count(&mut rig, c.into()))
         .sum();
     let now = rig.bench.results().len() as u32;
     assert!(
-        // The last one may not have been looked at yet.
+        // The last one may not be counted yet.
         (results..=now + 1).contains(&counted),
         "{results} {counted} {now}"
     );

@@ -1,4 +1,4 @@
-//! Seconds of a busy host: the words that it reads and writes cost no sample.
+//! Seconds with a busy host: its reads and writes cost no sample.
 
 use super::rig::{quick, Make, Rig};
 use endat_hdl::endat::{
@@ -17,10 +17,10 @@ use std::{collections::BTreeSet, thread};
 const SYSTEM_HZ: u64 = 10_000_000;
 const ENDAT_HZ: u64 = SYSTEM_HZ / 8;
 const SAMPLE_HZ: u64 = 10_000;
-/// Runs side by side that share them.
+/// Parallel runs that share the samples.
 const PARTS: u64 = 2;
 
-/// The requests of a round: what goes out, and what the answer must be then; none = whatever.
+/// The requests of a round, with their expected answers; `None` = any.
 fn round(address: u8, data: u16) -> [(ModeCommand, u8, u16, Option<u16>); 9] {
     let byte = |low: u8| Some(u16::from_be_bytes([address, low]));
     let [high, low] = data.to_be_bytes();
@@ -38,8 +38,8 @@ fn round(address: u8, data: u16) -> [(ModeCommand, u8, u16, Option<u16>); 9] {
     ]
 }
 
-/// A host that is never done: it looks at the service at another moment of each period, and sends the next request as soon as
-/// the last one is finished.
+/// A permanently active host: it accesses the service at another time of each period, and sends the next request when
+/// the last one has finished.
 struct Host {
     rng: Rng,
     finished: u32,
@@ -72,7 +72,7 @@ impl Host {
     }
 }
 
-/// One run of so many samples.
+/// One run with this many samples.
 fn part(seed: u64, samples: u64) {
     const PERIOD: u64 = SYSTEM_HZ / SAMPLE_HZ;
     let encoder = EncoderConfig::endat22(13).position(PositionSource::Random);
@@ -96,7 +96,7 @@ fn part(seed: u64, samples: u64) {
         triggers.push(rig.bench.now());
         rig.bench.trigger();
         let end = rig.bench.cycle() + PERIOD;
-        // Long enough before the next trigger for all that it does.
+        // Long enough before the next trigger for all its accesses.
         let phase = host.rng.in_range(1, PERIOD - 60);
         rig.bench.run_cycles(phase);
         host.look(&mut rig);
@@ -122,7 +122,7 @@ fn part(seed: u64, samples: u64) {
     rig.assert_clean();
 }
 
-/// Runs this many samples in all.
+/// Runs this many samples in total.
 fn run(samples: u64) {
     thread::scope(|scope| {
         for seed in 1..=PARTS {

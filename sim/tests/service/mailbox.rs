@@ -58,8 +58,8 @@ fn every_error_has_its_code() {
         let (error, _) = rig.request_code(code, 0, 0);
         assert_eq!(error, request_state::UNKNOWN);
     }
-    assert_eq!(rig.bench.frames(0).len(), frames, "nothing went out");
-    // An area that no encoder has.
+    assert_eq!(rig.bench.frames(0).len(), frames, "nothing was sent");
+    // An unknown area.
     let (error, _) = rig.request(SelectMemory, 0x11, 0);
     assert_eq!(error, request_state::SILENT);
     let finished = rig.read(word::REQUEST_STATE) >> 16;
@@ -67,15 +67,15 @@ fn every_error_has_its_code() {
     rig.good_position();
 }
 
-/// A trigger in any moment around the reset's frame and the encoder's start: none reaches the encoder before it is there again.
-/// Catches triggers that are let through between the end of the frame and the wait.
+/// Triggers at any time around the reset's frame and the encoder's start: none reaches the encoder before it is ready.
+/// Catches triggers that are accepted between the end of the frame and the wait.
 #[test]
 fn no_trigger_disturbs_the_start_of_an_encoder_that_is_reset() {
     let encoder = encoder().position(PositionSource::Ramp { start: 0, step: 77 });
     let mut rig = Rig::new(false, encoder, 25);
     rig.good_position();
     let reset = u32::from(ReceiveReset.code()) << 24;
-    // Apart by a little more than a frame: every request meets them somewhere else.
+    // Slightly more than a frame apart, so that every request meets them at another place.
     let apart = rig.bench.system_hz() / 9_001;
     for _ in 0..12 {
         let before = rig.read(word::REQUEST_STATE) >> 16;
@@ -86,7 +86,7 @@ fn no_trigger_disturbs_the_start_of_an_encoder_that_is_reset() {
         }
         assert_eq!(rig.read(word::REQUEST_STATE) as u16, 0, "fulfilled");
         rig.assert_clean();
-        // Those that came while the request's frame was under way are told with the first position behind it.
+        // The first position after the request's frame reports the triggers that were lost during it.
         rig.frames(2);
         rig.good_position();
     }

@@ -1,4 +1,4 @@
-//! Requests, health and initialisation by the service of an encoder port, as a host sees them.
+//! Requests, health and initialisation by the service of an encoder port, as seen by a host.
 
 mod health;
 mod initialise;

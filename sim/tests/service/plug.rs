@@ -1,5 +1,5 @@
-//! The plug pulled at every half clock period of a frame with additional data 1 and 2 and a supplement, and put back at any moment.
-//! `unplugged` has some of these moments.
+//! The plug is pulled at every half clock period of a frame with additional data 1 and 2 and a supplement, and plugged in at any time.
+//! `unplugged` has some of these times.
 
 use super::rig::{quick, times};
 use crate::requests::lanes::{
@@ -23,13 +23,13 @@ use rtl_design::engine::{Keep, LaneWords, Lanes};
 use rust_hdl::prelude::Block;
 use std::{ops::Range, sync::OnceLock};
 
-/// Triggers come so far apart.
+/// Trigger period.
 pub(super) const PERIOD: Time = 150 * US;
-/// When the frame begins in which the plug is pulled.
+/// Start of the frame in which the plug is pulled.
 const PULLED_FROM: Time = 3 * MS;
-/// Ticks of a millisecond for which DATA must be HIGH to be taken for an open line.
+/// Milliseconds of HIGH after which DATA counts as an open line.
 const UNPLUGGED_MS: u16 = 2;
-/// A program that is quiet for so long begins anew.
+/// Milliseconds without a sign of life after which a program restarts.
 pub(super) const STUCK_MS: u16 = 2;
 
 pub(super) fn encoder() -> EncoderConfig {
@@ -67,7 +67,7 @@ fn engine(initialise: bool) -> Lanes {
     Lanes::new(&design, Keep::Outputs, LaneWords::Two).expect("the port has no loop")
 }
 
-/// Ports with a host that does the same to all of them, and a trigger every 150 us.
+/// Ports with a host that accesses all of them equally, and a trigger every 150 us.
 pub(super) struct Hosts {
     pub rig: Rig,
     pub next_trigger: Time,
@@ -102,7 +102,7 @@ impl Hosts {
         (0..8).for_each(|_| self.tick());
     }
 
-    /// What all lanes have in a word.
+    /// A word of all lanes.
     pub fn read(&mut self, word: u8) -> Vec<u32> {
         self.rig.bench.set_all("host_address", word.into());
         self.strobe("host_read");
@@ -125,7 +125,7 @@ impl Hosts {
         self.strobe("host_write");
     }
 
-    /// Waits until a word is as wanted in all lanes.
+    /// Waits until a word satisfies a condition in all lanes.
     fn wait_for(&mut self, word: u8, span: Time, done: impl Fn(u32) -> bool) {
         let end = self.rig.bench.now() + span;
         loop {
@@ -159,7 +159,7 @@ impl Hosts {
         });
     }
 
-    /// A request that must be fulfilled in all lanes.
+    /// A request that must succeed in all lanes.
     pub fn good(&mut self, command: ModeCommand, address: u8) {
         let before = self.read(word::REQUEST_STATE);
         self.request(command, address);
@@ -173,7 +173,7 @@ impl Hosts {
         }
     }
 
-    /// Every fresh position of a lane is one that its encoder has sent.
+    /// Every fresh position of a lane was sent by its encoder.
     pub fn assert_never_wrong(&self, what: &[String]) {
         for (lane, what) in what.iter().enumerate() {
             let frames = self.rig.bench.link(0, lane).encoder().frames();
@@ -185,7 +185,7 @@ impl Hosts {
         }
     }
 
-    /// The last results are good ones. No frame is under way.
+    /// The last results are good. No frame is under way.
     pub fn assert_good_positions(&self, what: &[String]) {
         for (lane, what) in what.iter().enumerate() {
             let frames = self.rig.bench.link(0, lane).encoder().frames();
@@ -212,12 +212,12 @@ fn places() -> impl Iterator<Item = Time> {
         .take_while(|t| *t < PULLED_FROM + US + FRAME_TIME + RECOVERY)
 }
 
-/// Pulls the plug of each lane for its time, in a frame with additional data 1 and 2 and a request. Everything is well again afterwards.
+/// Pulls the plug of each lane for its time, in a frame with additional data 1 and 2 and a request. Everything works again afterwards.
 fn pull(ready: &Lanes, absences: &[(Time, Time)], initialises: bool) {
     pull_and_bounce(ready, absences, initialises, &|_| vec![]);
 }
 
-/// The same, and what follows within these spans after the encoder has come back.
+/// As [`pull`], with more interruptions within these spans after the encoder has returned.
 fn pull_and_bounce(
     ready: &Lanes,
     absences: &[(Time, Time)],
@@ -251,7 +251,7 @@ fn pull_and_bounce(
         assert!(hosts.rig.bench.now() < PULLED_FROM - PERIOD);
         hosts.run_until(PULLED_FROM - 60 * US);
         hosts.request(PositionSelectMemory, 0x4D);
-        // The trigger that takes it along.
+        // The trigger of the request.
         hosts.next_trigger = PULLED_FROM + US;
         let last = absences.iter().map(|a| a.0 + a.1).max().unwrap_or(0);
         hosts.run_until(last + 100 * US);
@@ -262,7 +262,7 @@ fn pull_and_bounce(
         hosts.rest();
         hosts.assert_never_wrong(&what);
         hosts.assert_good_positions(&what);
-        // The request that was under way has ended; another one is fulfilled.
+        // The request under way has ended; another one succeeds.
         hosts.finished();
         hosts.good(PositionSelectMemory, 0xA1);
         hosts.good(PositionSelectMemory, 0x47);
@@ -273,7 +273,7 @@ fn pull_and_bounce(
     }
 }
 
-/// A port at work, with its encoder initialised if it does that.
+/// A running port; its encoder is initialised if `initialise`.
 pub(super) fn ready(initialise: bool) -> Lanes {
     static MADE: [OnceLock<Lanes>; 2] = [const { OnceLock::new() }; 2];
     let make = || {
@@ -291,7 +291,7 @@ pub(super) fn ready(initialise: bool) -> Lanes {
     MADE[usize::from(initialise)].get_or_init(make).clone()
 }
 
-/// Away for less than an open line takes to be noticed: back within the same frame, in the pause after it, in a later frame.
+/// Shorter than the detection time of an open line: back within the same frame, in the pause after it, in a later frame.
 fn short() -> Vec<(Time, Time)> {
     let lengths = [3 * US, 23 * US, 150 * US, 600 * US];
     places()
@@ -316,7 +316,7 @@ fn an_encoder_that_was_away_for_long_is_initialised_afresh_whenever_it_comes_bac
     pull(&ready(true), &absences, true);
 }
 
-/// Contacts that open again during the power-up sequence or in any step of the initialisation, for a moment or for long.
+/// Contacts that open again during the power-up sequence or in any step of the initialisation, briefly or for long.
 #[test]
 #[ignore = "slow: bounces in every step of the initialisation"]
 fn an_encoder_whose_plug_bounces_is_initialised_when_it_stays() {

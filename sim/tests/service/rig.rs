@@ -30,17 +30,17 @@ use std::{
 
 /// EnDat clock.
 pub const ENDAT_HZ: u64 = 2_000_000;
-/// Longer than any request or initialisation.
+/// More than any request or initialisation.
 const LIMIT: Time = 2_000 * MS;
 
-/// What a port is made for.
+/// Parameters of a port.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Make {
     pub system_hz: u64,
     pub initialise: bool,
     pub wants_short: bool,
     pub infos: [u8; LIST],
-    /// Waits as short as an encoder of [`hasty`] allows.
+    /// Waiting times as short as an encoder of [`hasty`] allows.
     pub is_hasty: bool,
 }
 
@@ -85,7 +85,7 @@ impl Make {
     }
 }
 
-/// A port after power-up; made once for each kind.
+/// A port after power-up; elaborated once for each kind.
 fn engine(make: Make) -> Compiled {
     static MADE: OnceLock<Mutex<BTreeMap<Make, Compiled>>> = OnceLock::new();
     let mut made = MADE
@@ -95,7 +95,7 @@ fn engine(make: Make) -> Compiled {
     made.entry(make).or_insert_with(|| make.engine()).clone()
 }
 
-/// An encoder that makes nobody wait, not even between two parameters.
+/// An encoder with short times, even between two parameters.
 pub fn hasty(mut encoder: EncoderConfig) -> EncoderConfig {
     encoder.tac = 0..=20 * US;
     encoder.write_time = 0..=20 * US;
@@ -110,7 +110,7 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// After reset, not yet initialised if that is wanted.
+    /// After reset, not initialised yet.
     pub fn new(initialise: bool, encoder: EncoderConfig, position_bits: u32) -> Self {
         Self::with(Make::usual(initialise), ENDAT_HZ, encoder, position_bits)
     }
@@ -152,7 +152,7 @@ impl Rig {
         }
     }
 
-    /// Runs until a word is as wanted.
+    /// Runs until a word satisfies a condition.
     pub fn wait_for(&mut self, word: u8, done: impl Fn(u32) -> bool) -> u32 {
         let end = self.bench.now() + LIMIT;
         loop {
@@ -165,7 +165,7 @@ impl Rig {
         }
     }
 
-    /// Runs to the end of the initialisation; the step that failed, 0 = none.
+    /// Runs to the end of the initialisation; returns the failed step, 0 = none.
     pub fn initialised(&mut self) -> u32 {
         let under_way = u32::from(state::INITIALISING);
         self.wait_for(word::STATE, |s| s & under_way != 0);
@@ -180,12 +180,12 @@ impl Rig {
         self.read(word::STATE) as u16
     }
 
-    /// Whether the encoder has been initialised.
+    /// True if the encoder has been initialised.
     pub fn is_initialised(&mut self) -> bool {
         self.state() & state::INITIALISED != 0
     }
 
-    /// Sends a request and runs to its end, with a trigger every 200 us if it rides; the error and the answer.
+    /// Sends a request and runs to its end, with a trigger every 200 us for attached requests; returns error and answer.
     pub fn request(&mut self, command: ModeCommand, address: u8, data: u16) -> (u16, u32) {
         self.request_code(command.code(), address, data)
     }
@@ -211,7 +211,7 @@ impl Rig {
         }
     }
 
-    /// A request that must be fulfilled; its answer.
+    /// A request that must succeed; returns its answer.
     pub fn good(&mut self, command: ModeCommand, address: u8, data: u16) -> u32 {
         let (error, answer) = self.request(command, address, data);
         assert_eq!(request_state::name(error), "fulfilled", "{command:?}");
@@ -235,7 +235,7 @@ impl Rig {
         }
     }
 
-    /// Nothing that the encoder could complain of has happened.
+    /// The encoder has noted no violation.
     pub fn assert_clean(&self) {
         assert_eq!(self.bench.violations(0), []);
         assert_eq!(self.bench.conflicts(0), []);

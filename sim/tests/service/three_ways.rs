@@ -1,4 +1,4 @@
-//! A port with its service at work with an encoder: what the bench drove is played to every execution of the design.
+//! A port with its service at work with an encoder: the recorded inputs of the bench are applied to every execution of the design.
 
 use super::rig::{hasty, quick, times};
 use crate::three_way::{three_way, Stimulus};
@@ -25,13 +25,13 @@ struct Life {
     endat_hz: u64,
     /// Clock of the frame that measures the delay.
     calibration_hz: u64,
-    /// From the first trigger to its result and the end of the frame that measures.
+    /// Time from the first trigger to its result and the end of the measuring frame.
     first: Time,
-    /// From one trigger to the next.
+    /// Trigger period.
     next: Time,
     /// Triggers after the first.
     triggers: u128,
-    /// Additional data that the service selects without being asked; otherwise the host lists them.
+    /// Additional data that the service selects by default; otherwise the host lists them.
     info: Option<u8>,
     encoder: EncoderConfig,
 }
@@ -54,7 +54,7 @@ impl Life {
         block
     }
 
-    /// Positions, a selection that rides, additional data, a request with a frame of its own; cycle by cycle.
+    /// Positions, an attached selection, additional data, a separate request frame; cycle by cycle.
     fn recorded(&self, design: &Design) -> Stimulus {
         let bits = self.encoder.position_bits;
         let link = Link::new(LineConfig::cable(10.0), self.encoder.clone());

@@ -1,4 +1,4 @@
-//! The plug pulled in a frame with additional data 1 and 2 and a supplement, and put back: some of the moments of `plug`.
+//! The plug is pulled in a frame with additional data 1 and 2 and a supplement, and plugged in again: some of the times of `plug`.
 
 use super::rig::{hasty, Make, Rig, ENDAT_HZ, SYSTEM_HZ};
 use endat_hdl::endat::service::map::{request_state, state, word};
@@ -13,10 +13,10 @@ use rtl_design::engine::Compiled;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// When the frame begins in which the plug is pulled.
+/// Start of the frame in which the plug is pulled.
 const FRAME: Time = 5 * MS;
 const POSITION_BITS: u32 = 13;
-/// An open line is known as one after 5 ms.
+/// An open line is detected after 5 ms.
 const LONG: Time = 8 * MS;
 
 fn make(initialise: bool) -> Make {
@@ -30,7 +30,7 @@ fn encoder() -> EncoderConfig {
     hasty(EncoderConfig::endat22(POSITION_BITS))
 }
 
-/// A port at work, with its encoder initialised if it does that.
+/// A running port; its encoder is initialised if `initialise`.
 fn ready(initialise: bool) -> Compiled {
     static MADE: [OnceLock<Compiled>; 2] = [const { OnceLock::new() }; 2];
     let made = || {
@@ -45,7 +45,7 @@ fn ready(initialise: bool) -> Compiled {
     MADE[usize::from(initialise)].get_or_init(made).clone()
 }
 
-/// Pulls the plug so long after the trigger, and again within the spans after it is put back. Everything is well again afterwards.
+/// Pulls the plug this long after the trigger, and again within the spans after it is plugged in. Everything works again afterwards.
 fn pull(initialise: bool, after: Time, length: Time, bounces: &[Range<Time>]) {
     let mut encoder = encoder();
     let back = FRAME + after + length;
@@ -89,7 +89,7 @@ fn pull(initialise: bool, after: Time, length: Time, bounces: &[Range<Time>]) {
         );
     }
     rig.good_position();
-    // The request that was under way has ended.
+    // The request under way has ended.
     assert_eq!(
         rig.read(word::REQUEST_STATE) as u16 & request_state::BUSY,
         0

@@ -1,4 +1,4 @@
-//! Upsets of the registers by which service and channel, and host and service, tell each other what there is to do.
+//! Upsets of the handshake registers between service and channel, and between host and service.
 
 use super::plug::{encoder, ready, Hosts, PERIOD, STUCK_MS};
 use crate::requests::lanes::{self, Rig, LANES};
@@ -6,7 +6,7 @@ use endat_hdl::endat::service::map::{control, request_state, word};
 use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{rng::Rng, Time, MS, US};
 
-/// The registers, with what is inverted in them.
+/// The registers, with the inverted bits.
 fn masks() -> Vec<(String, u128)> {
     let flags = [
         "has_event",
@@ -22,11 +22,11 @@ fn masks() -> Vec<(String, u128)> {
     masks.into_iter().map(full).collect()
 }
 
-/// Moments from the host's write to behind the end of the frame that takes the request along.
+/// Times from the host's write to after the end of the frame with the request.
 const MOMENTS: u64 = 24;
 const SPAN: Time = 240 * US;
 
-/// Upsets each of them at so many moments.
+/// Upsets each of them at this many times.
 fn handshakes(moments: u64) {
     let ready = ready(false);
     let names: Vec<String> = ready.nets().map(Into::into).collect();
@@ -100,7 +100,7 @@ fn an_upset_of_a_handshake_loses_a_request_at_most_and_the_next_one_is_fulfilled
     handshakes(MOMENTS);
 }
 
-/// Where the program is, or where it returns to, at moments of its main loop's round: some of these jumps end in a loop.
+/// Upsets of the program counter and the return address, at times of the main loop: some of these jumps end in a loop.
 fn astray(moments: u64) {
     let ready = ready(false);
     let names: Vec<String> = ready.nets().map(Into::into).collect();
@@ -140,7 +140,7 @@ fn astray(moments: u64) {
         let starts = hosts.read(word::STATE).into_iter().map(|s| s >> 16);
         most_starts = most_starts.max(starts.max().unwrap_or(0));
     }
-    assert!(most_starts > 1, "none of them was led into a loop");
+    assert!(most_starts > 1, "no upset led into a loop");
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn a_program_that_goes_astray_at_any_moment_begins_anew() {
     astray(MOMENTS);
 }
 
-/// Registers of the program's machine, and how many bits each has.
+/// Registers of the program's machine, with their number of bits.
 const MACHINE: [(&str, usize); 6] = [
     ("counter", 11),
     ("link", 11),
@@ -167,8 +167,8 @@ const MACHINE: [(&str, usize); 6] = [
 const LIMITS: u32 = 0x0000_0FA3;
 const CONTINUOUS: u32 = 2;
 
-/// The host's settings while each bit of these registers is upset at so many moments of the main loop's round: they stay, or `starts` says
-/// that the host has to write them again, and that restores the axis.
+/// The host's settings while each bit of these registers is upset at times of the main loop: they remain, or `starts` reports
+/// that the host must write them again, and writing them restores the axis.
 fn settings(registers: &[(&str, usize)], moments: u64) {
     let ready = ready(false);
     let names: Vec<String> = ready.nets().map(Into::into).collect();
@@ -204,7 +204,7 @@ fn settings(registers: &[(&str, usize)], moments: u64) {
         }
         hosts.run_for(Time::from(STUCK_MS + 3) * MS);
         let words = [word::LIMITS, word::CONTINUOUS, word::FORCE].map(|w| hosts.read(w));
-        // A start under way counts at its end.
+        // A start under way is counted at its end.
         hosts.run_for(PERIOD);
         let after = hosts.read(word::STATE);
         for (lane, what) in what.iter().enumerate() {
@@ -225,7 +225,7 @@ fn settings(registers: &[(&str, usize)], moments: u64) {
         hosts.assert_never_wrong(&what);
         hosts.assert_good_positions(&what);
     }
-    assert!(begun > 0, "none of them made the program begin anew");
+    assert!(begun > 0, "no upset restarted the program");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Requests that ride on a trigger, and no trigger comes.
+//! Requests that wait for a trigger that does not come.
 
 use super::rig::{quick, Rig};
 use endat_hdl::endat::{
@@ -15,7 +15,7 @@ fn rig() -> Rig {
     rig
 }
 
-/// Writes a request that rides, without a trigger.
+/// Writes an attached request, without a trigger.
 fn send(rig: &mut Rig, command: u8, address: u8) {
     rig.write(
         word::REQUEST,
@@ -24,7 +24,7 @@ fn send(rig: &mut Rig, command: u8, address: u8) {
     rig.wait_for(word::REQUEST_STATE, |s| s & 1 == 1);
 }
 
-/// The error of a request that ends without anybody's doing within so many milliseconds.
+/// The error of a request that ends by itself within this many milliseconds.
 fn ended(rig: &mut Rig, ms: u64) -> u16 {
     let before = rig.read(word::REQUEST_STATE) >> 16;
     let end = rig.bench.now() + ms * MS;
@@ -39,7 +39,7 @@ fn ended(rig: &mut Rig, ms: u64) -> u16 {
     }
 }
 
-/// The next request of either kind is fulfilled, and positions go on.
+/// The next request of either kind succeeds, and positions continue.
 fn assert_free(rig: &mut Rig) {
     rig.good(SelectMemory, 0xA1, 0);
     rig.good(PositionSelectMemory, 0xA1, 0);
@@ -58,14 +58,14 @@ fn a_request_without_a_trigger_ends_by_itself_and_sends_nothing() {
     assert_eq!(rig.read(word::REQUEST_STATE) & 1, 1, "not before its time");
     assert_eq!(ended(&mut rig, 10), request_state::NO_TRIGGER);
     assert_eq!(rig.bench.frames(0).len(), frames);
-    // It does not go out behind its end.
+    // It is not sent after its end.
     rig.good_position();
     let last = rig.bench.frames(0).last().unwrap().command;
     assert_eq!(last, Some(SendPositionAddInfo.code()));
     assert_free(&mut rig);
 }
 
-/// The supplement is out, and no frame brings the additional data that would tell what became of it.
+/// The supplement has been sent, and no frame brings the additional data with its result.
 #[test]
 fn a_request_whose_answer_no_trigger_brings_ends_by_itself() {
     let mut rig = rig();
@@ -87,7 +87,7 @@ fn without_a_limit_a_request_waits_until_it_is_cancelled() {
     send(&mut rig, PositionErrorReset.code(), 0);
     rig.bench.run_for(100 * MS);
     assert_eq!(rig.read(word::REQUEST_STATE) & 1, 1);
-    // What else the control word asks for waits for the end of the request, and is done then.
+    // Other actions in the control word wait for the end of the request, and are executed then.
     rig.write(word::CONTROL, u32::from(control::CANCEL | control::CLEAR));
     assert_eq!(ended(&mut rig, 1), request_state::CANCELLED);
     rig.bench.run_for(MS);
@@ -95,14 +95,14 @@ fn without_a_limit_a_request_waits_until_it_is_cancelled() {
     rig.good_position();
     let last = rig.bench.frames(0).last().unwrap().command;
     assert_eq!(last, Some(SendPositionAddInfo.code()));
-    // With nothing under way it does nothing.
+    // It has no effect with no request under way.
     rig.write(word::CONTROL, u32::from(control::CANCEL));
     rig.bench.run_for(MS);
     assert_eq!(rig.read(word::REQUEST_STATE) & 1, 0);
     assert_free(&mut rig);
 }
 
-/// A frame that has the request already is finished, and the request with it.
+/// A frame that already carries the request is completed, and so is the request.
 #[test]
 fn a_cancelled_request_on_the_wire_is_finished() {
     let mut rig = rig();

@@ -1,4 +1,4 @@
-//! Short waits of card and encoder, so that a test does not take as long as a power-up.
+//! Short waiting times of card and encoder, so that a test takes less time than a power-up.
 
 use endat_hdl::endat::service::program::ServiceTimes;
 use endat_sim::{encoder::EncoderConfig, MS};
@@ -6,7 +6,7 @@ use endat_sim::{encoder::EncoderConfig, MS};
 /// System clock of these tests.
 pub const SYSTEM_HZ: u64 = 16_000_000;
 
-/// Short waits, so that a test does not take as long as a power-up.
+/// Short waiting times, so that a test takes less time than a power-up.
 pub fn times(initialise: bool) -> ServiceTimes {
     ServiceTimes {
         initialise,
@@ -21,7 +21,7 @@ pub fn times(initialise: bool) -> ServiceTimes {
     }
 }
 
-/// An encoder for whose waits these tests have the time.
+/// An encoder with waiting times for these tests.
 pub fn quick(mut encoder: EncoderConfig) -> EncoderConfig {
     encoder.tac = 0..=100_000_000;
     encoder.write_time = 0..=MS;

@@ -1,4 +1,4 @@
-//! A line that breaks in the middle of a frame, and an encoder that needs longer than it may.
+//! A line that breaks in the middle of a frame, and an encoder with a recovery time above the limit.
 
 use super::run::{Run, Settings, SYSTEM_MHZ};
 use endat_hdl::protocols::ssi::cause;
@@ -26,7 +26,7 @@ fn start(tm_us: u64) -> Run {
     Run::new(settings, encoder)
 }
 
-/// DATA goes LOW and stays there, at every half period of a frame: until the end of the recovery time it may look like a good one.
+/// DATA goes LOW permanently at every half period of a frame: until the end of the recovery time the frame may look good.
 #[test]
 fn port_withdraws_a_position_when_data_stays_low() {
     let start = start(18);
@@ -46,7 +46,7 @@ fn port_withdraws_a_position_when_data_stays_low() {
         let told = [cause::DATA_NOT_HIGH, cause::RECOVERY_TOO_LONG].map(u128::from);
         assert!(told.contains(&run.get("cause")), "{moment}");
         assert_eq!(run.get("sequence"), 1, "no other result");
-        // The line is whole again.
+        // The line is repaired.
         run.broken = None;
         run.cycles(RECOVERY_MAX_US * SYSTEM_MHZ);
         run.trigger();
@@ -56,7 +56,7 @@ fn port_withdraws_a_position_when_data_stays_low() {
     assert!(withdrawn > 20 && refused > 0, "{withdrawn} {refused}");
 }
 
-/// An encoder with a longer recovery time than configured looks the same: its position is withdrawn, and the next result says so, too.
+/// An encoder with a longer recovery time than configured looks the same: its position is withdrawn, and the next result reports it, too.
 #[test]
 fn port_withdraws_the_position_of_an_encoder_that_recovers_too_late() {
     let mut run = start(30);

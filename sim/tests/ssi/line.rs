@@ -1,4 +1,4 @@
-//! The port at its encoder, at the ends of what a configuration allows.
+//! The port with its encoder, at the limits of a configuration.
 
 use super::{bench, design, link, power_up};
 use endat_hdl::config::{ChannelConfig, ChannelSpec};
@@ -47,7 +47,7 @@ fn configure(bench: &mut Bench<Compiled>, config: &ChannelConfig) {
     }
 }
 
-/// Triggers as fast as the configuration allows; each brings the position of its first falling edge.
+/// Triggers at the fastest allowed rate; each result has the position of its first falling edge.
 fn run(config: &ChannelConfig, encoder: EncoderConfig, delay_ns: u64, frames: usize) {
     let encoder = EncoderConfig {
         position_bits: config.position_bits,
@@ -106,7 +106,7 @@ fn positions_come(rates: &[(u64, u64)], codes: &[(bool, bool, Parity)]) {
                     };
                     let delay_ns = match encoder_ns {
                         10 => 0,
-                        // All that is left of a period, both ways.
+                        // The rest of a period, for both directions.
                         _ => (most_ns - 400) / 2,
                     };
                     run(&config, encoder, delay_ns, 3);
@@ -143,7 +143,7 @@ fn every_position_comes_at_the_ends_of_the_tolerances() {
     positions_come(&RATES, &CODES);
 }
 
-/// Catches a bit that is taken later than the limit says: beyond it positions are wrong.
+/// Catches a bit that is sampled later than the limit allows: beyond it positions are wrong.
 #[test]
 fn the_limit_of_the_delay_is_one() {
     let config = resolved(SsiSpec::default(), spec(24, 500_000));
@@ -171,7 +171,7 @@ fn the_limit_of_the_delay_is_one() {
     assert!(wrong > 15, "{wrong}");
 }
 
-/// Random defects: each has its cause, none brings another position than the encoder's, and the next good frame is good.
+/// Random defects: each has its cause, none brings a wrong position, and the next frame is good.
 #[test]
 fn what_is_wrong_is_told_and_forgotten() {
     let mut rng = Rng::new(5);

@@ -1,4 +1,4 @@
-//! SSI: the port at its encoder.
+//! SSI: the port with its encoder.
 
 mod broken;
 mod line;
@@ -19,7 +19,7 @@ use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::sync::Arc;
 
-/// A port as a card has it that is asked for this.
+/// A port as in a card with this request.
 fn block(asked: &SsiSpec) -> EncoderPort {
     let mut block = EncoderPort::asked(&Spoken::Ssi(*asked), true, false);
     block.connect_all();
@@ -30,12 +30,12 @@ fn design() -> Design {
     elaborate(&block(&SsiSpec::default()), "encoder_port").unwrap()
 }
 
-/// A position that nobody can guess.
+/// A position that is hard to match by chance.
 fn shaft(time: Time) -> u64 {
     (time / 1_000).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 8
 }
 
-/// A port with an encoder `delay` away.
+/// A port with an encoder at the line delay `delay`.
 fn bench(design: &Design, system_hz: u64, config: EncoderConfig, delay: Time) -> Bench<Compiled> {
     let mut bench = Bench::new(Compiled::new(design).unwrap(), system_hz, vec![]);
     let mut link = SsiLink::new(config, delay);
@@ -44,7 +44,7 @@ fn bench(design: &Design, system_hz: u64, config: EncoderConfig, delay: Time) ->
     bench
 }
 
-/// From power-up until a trigger is taken: the encoder may be in the middle of a frame.
+/// From power-up until a trigger is accepted: the encoder may be in the middle of a frame.
 fn power_up(bench: &mut Bench<Compiled>) {
     bench.power_up();
     while bench.get("busy") != 0 {
@@ -52,7 +52,7 @@ fn power_up(bench: &mut Bench<Compiled>) {
     }
 }
 
-/// The encoder on it.
+/// The encoder of the bench.
 fn link(bench: &mut Bench<Compiled>) -> &mut SsiLink {
     bench.others_as_mut().next().expect("an SSI encoder")
 }

@@ -1,4 +1,4 @@
-//! A reset in the middle of a frame: no wrong position afterwards, whenever the next trigger comes.
+//! A reset in the middle of a frame: no wrong position afterwards, for any time of the next trigger.
 
 use super::run::{engine_for, Run, Settings, SYSTEM_MHZ};
 use endat_hdl::protocols::ssi::cause;
@@ -9,10 +9,10 @@ use endat_sim::US;
 
 const PERIOD: u64 = 20;
 const WIDTH: u32 = 25;
-/// Recovery time of the encoder, and the longest one that the port is set to, in microseconds.
+/// Recovery time of the encoder, and the port's limit, in microseconds.
 const TM_US: u64 = 19;
 const RECOVERY_MAX_US: u64 = 20;
-/// The alternating bits are other ones wherever a frame is cut.
+/// Alternating bits differ wherever a frame is cut.
 const POSITION: u64 = 0x155_32D3;
 
 fn start(twice: bool, repeats: bool) -> Run {
@@ -36,7 +36,7 @@ fn asked(twice: bool, repeats: bool) -> (Settings, EncoderConfig) {
     (settings, encoder)
 }
 
-/// Resets the port at so many moments of a frame, triggers it up to 10 us later, and again and again.
+/// Resets the port at this many times of a frame, then triggers it repeatedly, the first time up to 10 us later.
 fn no_position_is_wrong_after_a_reset(moments: u64) {
     let mut rng = Rng::new(47);
     let (mut count, mut good) = (0, 0);
@@ -53,7 +53,7 @@ fn no_position_is_wrong_after_a_reset(moments: u64) {
             run.trigger();
             run.cycles(cycle);
             run.reset();
-            // Triggers that are lost change nothing.
+            // Lost triggers have no effect.
             for _ in 0..4 {
                 run.cycles(rng.in_range(0, 10 * SYSTEM_MHZ));
                 let before = run.get("sequence");
@@ -92,7 +92,7 @@ fn port_takes_no_trigger_after_a_reset_until_the_recovery_time_has_passed() {
     let waited = run.waits();
     let needed = RECOVERY_MAX_US * SYSTEM_MHZ + PERIOD;
     assert!((needed..needed + 30).contains(&waited), "{waited}");
-    // A trigger within it is lost, and the next result says so.
+    // A trigger during the wait is lost, and the next result reports it.
     run.reset();
     run.cycles(50);
     run.trigger();
@@ -104,11 +104,11 @@ fn port_takes_no_trigger_after_a_reset_until_the_recovery_time_has_passed() {
     assert_eq!(run.fresh(), Some(POSITION));
 }
 
-/// An encoder with more bits is in the middle of its frame when the port has all it wants; DATA that is HIGH there is one of its bits.
+/// An encoder with more bits is in the middle of its frame when the port has finished; a HIGH of DATA there is one of its bits.
 #[test]
 fn port_waits_after_a_frame_whose_end_is_high() {
     let mut run = start(false, true);
-    // The bit after the last one that is asked for is HIGH.
+    // The bit after the last requested one is HIGH.
     run.set("position_bits", 18);
     run.trigger();
     run.cycles(19 * PERIOD + 2 * PERIOD);
@@ -118,12 +118,12 @@ fn port_waits_after_a_frame_whose_end_is_high() {
         waited >= RECOVERY_MAX_US * SYSTEM_MHZ - 2 * PERIOD,
         "{waited}"
     );
-    // The frame before has left the encoder.
+    // The encoder has finished the previous frame.
     run.set("position_bits", WIDTH.into());
     assert!(run.is_good());
 }
 
-/// Power-up of the card may come in the middle of a frame, too: the encoder has a supply of its own.
+/// Power-up of the card may come in the middle of a frame, too: the encoder has a separate supply.
 #[test]
 fn port_takes_no_trigger_after_power_up_until_the_recovery_time_has_passed() {
     let (settings, encoder) = asked(false, true);
@@ -134,7 +134,7 @@ fn port_takes_no_trigger_after_power_up_until_the_recovery_time_has_passed() {
     assert!(run.is_good());
 }
 
-/// A frame that an upset has ended leaves the encoder in the middle of its own, where DATA is any bit.
+/// A frame ended by an upset leaves the encoder in the middle of its frame, where DATA is any bit.
 #[test]
 fn port_waits_after_an_upset_until_the_recovery_time_has_passed() {
     let start = start(false, true);
@@ -142,7 +142,7 @@ fn port_waits_after_an_upset_until_the_recovery_time_has_passed() {
     let state = (start.engine.registers()).find(|register| names[*register] == "state");
     let state = state.unwrap();
     let bits = 0..start.engine.width_bits(state);
-    // Where DATA is HIGH at the end, and where it is LOW there and goes HIGH afterwards.
+    // Times with DATA HIGH at the end, and with DATA LOW that goes HIGH afterwards.
     let moments = (3 * PERIOD..20 * PERIOD).step_by(17);
     for (bit, cycle) in bits.flat_map(|bit| moments.clone().map(move |n| (bit, n))) {
         let mut run = start.clone();

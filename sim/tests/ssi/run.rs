@@ -1,4 +1,4 @@
-//! A bare SSI port at an encoder, cycle by cycle, with its registers at hand.
+//! A bare SSI port with an encoder, cycle by cycle, with access to its registers.
 
 use endat_hdl::protocols::ssi::port::SsiPort;
 use endat_hdl::protocols::SsiSpec;
@@ -10,10 +10,10 @@ use rust_hdl::prelude::Block;
 use std::sync::OnceLock;
 
 pub const SYSTEM_MHZ: u64 = 20;
-/// The longest wait, after an upset, too: a timer of 13 bits.
+/// The longest wait, also after an upset: a 13-bit timer.
 const LIMIT_CYCLES: u64 = 10_000;
 
-/// Settings of the port besides the width, which is that of the encoder unless a test changes it.
+/// Settings of the port except the width, which is that of the encoder unless a test changes it.
 #[derive(Clone, Copy)]
 pub struct Settings {
     pub frame: u128,
@@ -21,7 +21,7 @@ pub struct Settings {
     pub recovery_limit_cycles: u64,
 }
 
-/// A port at its encoder.
+/// A port with its encoder.
 #[derive(Clone)]
 pub struct Run {
     pub engine: Compiled,
@@ -37,7 +37,7 @@ fn engine() -> Compiled {
     ENGINE.get_or_init(make).clone()
 }
 
-/// A port that is made for this.
+/// A port with this request.
 pub fn engine_for(asked: &SsiSpec) -> Compiled {
     let mut block = SsiPort::new(asked, true);
     block.connect_all();
@@ -51,7 +51,7 @@ impl Run {
         Self::of(engine(), settings, encoder)
     }
 
-    /// The same of a port that is there.
+    /// As [`Run::new`], with an existing engine.
     pub fn of(engine: Compiled, settings: Settings, encoder: EncoderConfig) -> Self {
         let mut run = Self::powered(engine, settings, encoder);
         run.cycles(40);
@@ -59,7 +59,7 @@ impl Run {
         run
     }
 
-    /// A port in the moment of power-up.
+    /// A port at power-up.
     pub fn powered(mut engine: Compiled, settings: Settings, encoder: EncoderConfig) -> Self {
         for (name, value) in [
             ("data_i", 1),
@@ -122,7 +122,7 @@ impl Run {
         self.set("reset", 0);
     }
 
-    /// Waits for the end of what is under way; false if there is none.
+    /// Waits for the end of the present activity; false if there is no end.
     pub fn ends(&mut self) -> bool {
         let last = self.cycle + LIMIT_CYCLES;
         while self.get("busy") == 1 {
@@ -134,7 +134,7 @@ impl Run {
         true
     }
 
-    /// How long it is busy from here on, in cycles.
+    /// Number of cycles until it is no longer busy.
     pub fn waits(&mut self) -> u64 {
         let start = self.cycle;
         while self.get("busy") == 1 && self.cycle < start + LIMIT_CYCLES {
@@ -143,14 +143,14 @@ impl Run {
         self.cycle - start
     }
 
-    /// The position that is shown as that of the last trigger.
+    /// The position if it belongs to the last trigger.
     pub fn fresh(&mut self) -> Option<u64> {
         let [valid, fresh, position] =
             ["position_valid", "fresh", "position"].map(|name| self.get(name));
         (valid == 1 && fresh == 1).then_some(position as u64)
     }
 
-    /// One trigger, and whether it brought all that it should.
+    /// One trigger; true if its result is good.
     pub fn is_good(&mut self) -> bool {
         self.trigger();
         let ends = self.ends();

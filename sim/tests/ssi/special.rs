@@ -1,4 +1,4 @@
-//! Bits that are not position: encoders that send them, as their data sheets have it, and encoders that keep their last bit on the line.
+//! Special bits as in the data sheets of encoders, and encoders that keep their last bit on the line.
 
 use super::run::{engine_for, Run, Settings, SYSTEM_MHZ};
 use endat_hdl::protocols::ssi::asked::Parity;
@@ -28,7 +28,7 @@ fn asked(before: &[Special], after: &[Special]) -> SsiSpec {
     }
 }
 
-/// A port that is made for this at an encoder, with one copy or two.
+/// A port with this request and an encoder, with one copy or two.
 fn start(asked: &SsiSpec, encoder: EncoderConfig) -> Run {
     let encoder = EncoderConfig {
         gray: asked.gray,
@@ -46,7 +46,7 @@ fn start(asked: &SsiSpec, encoder: EncoderConfig) -> Run {
     Run::of(engine_for(asked), settings, encoder)
 }
 
-/// A trigger: cause, flags, special bits that are shown, and the position if it is taken.
+/// A trigger: returns cause, flags, shown special bits, and the position if valid.
 fn frame(run: &mut Run) -> (u64, u64, u64, Option<u64>) {
     run.trigger();
     assert!(run.ends());
@@ -54,7 +54,7 @@ fn frame(run: &mut Run) -> (u64, u64, u64, Option<u64>) {
     (cause, flags & 0xFFF, flags >> 12, run.fresh())
 }
 
-/// A frame is good; then each of its special bits is inverted, which is this cause, or none with these bits shown.
+/// A good frame; then each special bit is inverted, with its expected cause, or none with these bits shown.
 fn every_bit_counts(run: &mut Run, shown: u64, bits: &[(usize, u64, u64)]) {
     let is = run.encoder.config.position;
     assert_eq!(frame(run), (0, 0, shown, Some(is)));
@@ -69,7 +69,7 @@ fn every_bit_counts(run: &mut Run, shown: u64, bits: &[(usize, u64, u64)]) {
     assert_eq!(run.encoder.violations(), []);
 }
 
-/// Beckhoff EL500x, KEB F6: 24 bits in Gray code, then one of the supply. Before, the position read 2386092, and its lowest bit was a sum of two.
+/// Beckhoff EL500x, KEB F6: 24 bits in Gray code, then a supply bit. Earlier the position read 2386092, and its lowest bit was a sum of two.
 #[test]
 fn port_takes_a_power_fail_bit_after_24_gray_bits() {
     let asked = SsiSpec {
@@ -90,7 +90,7 @@ fn port_takes_a_power_fail_bit_after_24_gray_bits() {
     }
 }
 
-/// maxon EPOS4: eight special bits, 16 + 17 bits of position in Gray code. Their parity inverted all bits of the position before.
+/// maxon EPOS4: eight special bits, 16 + 17 bits of position in Gray code. Earlier their parity inverted all bits of the position.
 #[test]
 fn port_passes_over_eight_bits_before_a_gray_position() {
     let asked = SsiSpec {
@@ -145,7 +145,7 @@ fn port_takes_status_and_parity_of_an_as5045() {
         assert_eq!(taken, (cause == 0).then_some(is));
         run.encoder.config.after = sound;
     }
-    // One bit that is disturbed, wherever it is.
+    // One disturbed bit at any place.
     for bit in 0..18 {
         run.encoder.config.defect = Defect::Flip { copy: 0, bit };
         let (found, flags, _, taken) = frame(&mut run);
@@ -154,7 +154,7 @@ fn port_takes_status_and_parity_of_an_as5045() {
     }
 }
 
-/// MagnTek MT6701: four status bits and a CRC of the 18 bits before it. The CRCs were computed by long division outside of this project.
+/// MagnTek MT6701: four status bits and a CRC of the 18 bits before it. The CRCs were computed by long division, independent of this project.
 #[test]
 fn port_checks_the_crc_of_an_mt6701() {
     let asked = asked(&[], &[Ignored, Shown, Shown, Shown, Crc6]);
@@ -190,7 +190,7 @@ fn port_checks_the_crc_of_an_mt6701() {
     }
 }
 
-/// The widest frame there is, each copy with its special bits: the lists, the parity bit of the position and two copies together.
+/// The widest frame, each copy with its special bits: the lists, the parity bit of the position and two copies together.
 #[test]
 fn port_takes_63_bits_twice_and_an_alarm_from_either_copy() {
     let asked = SsiSpec {
@@ -214,7 +214,7 @@ fn port_takes_63_bits_twice_and_an_alarm_from_either_copy() {
     for _ in 0..20 {
         let position = rng.next_u64() >> 16;
         run.encoder.config.position = position;
-        // Eight places: the alarm and what is next to it, the position, then the rest.
+        // Eight places: the alarm with its neighbours, the position, then the rest.
         assert_eq!(frame(&mut run), (0, 0, 0b1000_1001, Some(position)));
     }
     for (copy, bit, raised) in [
@@ -233,7 +233,7 @@ fn port_takes_63_bits_twice_and_an_alarm_from_either_copy() {
         let (found, flags, _, taken) = frame(&mut run);
         assert_eq!(taken, None, "{copy} {bit}");
         assert_ne!(flags & cause::flag(raised), 0, "{copy} {bit}: {flags:#x}");
-        // A disturbed bit spoils the CRC, too.
+        // A disturbed bit makes the CRC wrong, too.
         assert_ne!(flags & cause::flag(cause::CRC), 0, "{copy} {bit}");
         assert_eq!(found, u64::from((flags.trailing_zeros()) + 1));
     }
@@ -242,8 +242,8 @@ fn port_takes_63_bits_twice_and_an_alarm_from_either_copy() {
     assert_eq!(run.encoder.violations(), []);
 }
 
-/// A host must not take "a trigger was lost" or "the frame before ended late", with which a position is good, for the cause of a frame that
-/// has none.
+/// A host must not read "a trigger was lost" or "the previous frame ended late", both with a good position, as the cause of a frame without
+/// a position.
 #[test]
 fn causes_of_special_bits_come_before_a_lost_trigger_and_a_late_end() {
     for (special, bit, raised) in [
@@ -259,7 +259,7 @@ fn causes_of_special_bits_come_before_a_lost_trigger_and_a_late_end() {
             ..EncoderConfig::default()
         };
         let mut run = start(&asked(&[], &[special]), encoder);
-        // The frame before is withdrawn.
+        // The previous frame is withdrawn.
         run.encoder.config.tm = 30 * US;
         assert_eq!(frame(&mut run).0, cause::RECOVERY_TOO_LONG);
         run.cycles(15 * SYSTEM_MHZ);
@@ -277,7 +277,7 @@ fn causes_of_special_bits_come_before_a_lost_trigger_and_a_late_end() {
     }
 }
 
-/// No bit has come, so no special bit is looked at.
+/// No bit was received, so no special bit is evaluated.
 #[test]
 fn special_bits_of_a_frame_without_bits_are_no_cause() {
     let mut run = start(&asked(&[], &[Valid]), EncoderConfig::default());
@@ -286,7 +286,7 @@ fn special_bits_of_a_frame_without_bits_are_no_cause() {
     assert_eq!(frame(&mut run), (not_high, cause::flag(not_high), 0, None));
 }
 
-/// A frame of a port that is set to 12 bits, at an encoder that keeps its last bit and has this width.
+/// A frame of a port set to 12 bits, with an encoder of this width that keeps its last bit.
 fn run_held(
     asked: &SsiSpec,
     defect: Defect,
@@ -304,7 +304,7 @@ fn run_held(
     check(frame(&mut run));
 }
 
-/// The encoder is HIGH after an odd position: the next frame must wait all the same, or it would get that position again.
+/// The encoder is HIGH after an odd position: the next frame must still wait, or it would read that position again.
 #[test]
 fn port_waits_out_the_recovery_time_of_an_encoder_that_keeps_its_last_bit() {
     let asked = SsiSpec {
@@ -329,7 +329,7 @@ fn port_waits_out_the_recovery_time_of_an_encoder_that_keeps_its_last_bit() {
             (run.encoder.frames(), run.encoder.violations()),
             (4, &[][..])
         );
-        // DATA that stays LOW withdraws the position, as with every encoder.
+        // DATA that stays LOW withdraws the position, as for every encoder.
         run.trigger();
         run.cycles(26 * PERIOD + 40);
         run.broken = Some(false);
@@ -342,14 +342,14 @@ fn port_waits_out_the_recovery_time_of_an_encoder_that_keeps_its_last_bit() {
     run_held(&asked, Defect::StuckLow, 12, |told| {
         assert_eq!((told.0, told.3), (cause::DATA_NOT_HIGH, None));
     });
-    // No wrong width is seen, whatever is in the cell after the last bit.
+    // A wrong width is not detected, for any level in the cell after the last bit.
     for bits in [10, 11, 13, 20] {
         run_held(&asked, Defect::None, bits, |told| {
             assert_eq!(told.0, 0, "{bits}");
             assert!(told.3.is_some());
         });
     }
-    // Only a special bit tells an open plug from a position of ones. With a LOW end it has a cause.
+    // Only a special bit distinguishes an open plug from a position of ones. With a LOW end it has a cause.
     let open = EncoderConfig {
         defect: Defect::Silent,
         position_bits: 12,
@@ -365,7 +365,7 @@ fn port_waits_out_the_recovery_time_of_an_encoder_that_keeps_its_last_bit() {
     assert_eq!(frame(&mut run).0, cause::NOT_VALID);
     let mut run = start(&SsiSpec::default(), open);
     assert_eq!(frame(&mut run).0, cause::DATA_NOT_LOW_AFTER);
-    // A port that expects LOW takes no odd position of such an encoder.
+    // A port that expects LOW rejects the odd positions of such an encoder.
     let encoder = EncoderConfig {
         position: 1,
         ..EncoderConfig::default()

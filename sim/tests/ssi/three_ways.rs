@@ -19,15 +19,15 @@ struct Frames {
     /// Recovery time of the encoder, and its limit in cycles.
     tm: Time,
     recovery_limit_cycles: u128,
-    /// From a trigger to the next round.
+    /// Waiting times from a trigger to the next round.
     waits_us: [u64; 2],
     rounds: usize,
     seed: u64,
-    /// The channel that the port serves.
+    /// The channel of the port.
     asked: SsiSpec,
 }
 
-/// Special bits of an encoder, each of the levels now and then such that it is a cause.
+/// Special bits of an encoder, each sometimes at the level of its cause.
 fn extras(specials: &Specials, rng: &mut Rng) -> Vec<Extra> {
     let mut extra = |special: Special| match special {
         Special::ParityEven => Extra::Parity(false),
@@ -124,7 +124,7 @@ fn agree(name: &str, frames: &Frames, sequence_min: u128) {
     for cause in 0..cause::ALARM {
         let comes = match cause {
             cause::UPSET => false,
-            // Those of the port alone are for the other run.
+            // Settings of the port alone belong to the other run.
             1.. if frames.asked.has_specials() => continue,
             _ => true,
         };
@@ -133,7 +133,7 @@ fn agree(name: &str, frames: &Frames, sequence_min: u128) {
     assert!(seen.output("fresh").contains(&1));
     assert!(
         seen.output("data_oe").iter().all(|oe| *oe == 0),
-        "nobody drives DATA"
+        "DATA is never driven"
     );
     assert!(seen.output("endat_clk").contains(&0));
 }
@@ -147,7 +147,7 @@ fn kernels_engines_and_verilog_agree_on_an_ssi_port() {
         recovery_limit_cycles: 120,
         waits_us: [2, 24],
         rounds: 24,
-        // Each cause comes.
+        // Each cause occurs.
         seed: 21,
         asked: SsiSpec::default(),
     };

@@ -1,4 +1,4 @@
-//! Every state that an SSI port can be brought into, reached or not: the next triggers work, and with two copies no wrong position goes out.
+//! Any state of an SSI port, reachable or not: the next triggers work, and with two copies no wrong position is reported.
 
 use super::run::{engine_for, Run, Settings};
 use endat_hdl::protocols::ssi::specials::Special::*;
@@ -10,9 +10,9 @@ use endat_sim::US;
 
 /// Registers up to this width get every value, wider ones have each of their bits inverted.
 const ALL_VALUES_BITS: usize = 6;
-/// Moments of the frame at which each of them is upset in the slow test.
+/// Times of the frame at which each of them is upset in the slow test.
 const MOMENTS: u64 = 16;
-/// Triggers that may be lost or bad after one that was upset.
+/// Triggers that may be lost or bad after an upset.
 const TRIGGERS: usize = 2;
 const WIDTH: u32 = 12;
 /// A frame of two copies and its recovery time, in cycles.
@@ -20,7 +20,7 @@ const FRAME_CYCLES: u64 = 2 * (WIDTH as u64 + 1) * PERIOD + 400;
 const PERIOD: u64 = 24;
 const POSITION: u64 = 0xA6C;
 
-/// Special bits before the position, and after it, with what an encoder without alarm sends.
+/// Special bits before and after the position, with those of an encoder without alarm.
 fn special(twice: bool) -> (SsiSpec, [Vec<Extra>; 2]) {
     let list = |specials: &[_]| Specials::new(specials).unwrap();
     let asked = SsiSpec {
@@ -34,7 +34,7 @@ fn special(twice: bool) -> (SsiSpec, [Vec<Extra>; 2]) {
     (asked, [vec![high, high, low], after])
 }
 
-/// A port that is made for this, at an encoder that sends these bits around its position.
+/// A port with this request, and an encoder that sends these bits around its position.
 fn start(asked: &SsiSpec, [before, after]: [Vec<Extra>; 2]) -> Run {
     let encoder = EncoderConfig {
         position_bits: WIDTH,
@@ -63,7 +63,7 @@ fn plain() -> Run {
     start(&asked, Default::default())
 }
 
-/// Upsets every register at all moments, or each value of it at one, another one for each.
+/// Upsets every register at all times, or each value of it at one time that varies.
 fn the_next_triggers_work(start: Run, all_moments: bool, count_min: usize) {
     let frame_cycles =
         FRAME_CYCLES + 14 * PERIOD * u64::from(!start.encoder.config.after.is_empty());
@@ -120,7 +120,7 @@ fn a_port_with_special_bits_works_after_an_upset_of_any_register() {
     the_next_triggers_work(start(&asked, extras), false, 5_000 / 17);
 }
 
-/// One copy: every bit of every register is inverted, each at some moments of the frame; gives how often, and when a wrong position was shown.
+/// One copy: inverts every bit of every register at some times of the frame; returns the number of upsets, and those with a wrong position.
 fn silent_upsets(moments: u64) -> (usize, Vec<String>) {
     let (asked, extras) = special(false);
     let start = start(&asked, extras);
@@ -150,7 +150,7 @@ fn silent_upsets(moments: u64) -> (usize, Vec<String>) {
     (count, wrong)
 }
 
-/// At most 0.5 % of all upsets; the bits that decide what is position are counted twice.
+/// At most 0.5 % of all upsets; the bits that select the position are counted twice.
 #[test]
 fn few_upsets_of_a_port_with_special_bits_show_a_wrong_position() {
     let (count, wrong) = silent_upsets(2);

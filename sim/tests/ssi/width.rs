@@ -1,4 +1,4 @@
-//! A port that is set to another width than its encoder has: what a frame shows of it, and what it cannot show. docs/ssi.md has the table.
+//! A port set to another width than its encoder: detected and undetected cases. docs/ssi.md has the table.
 
 use super::run::{Run, Settings, SYSTEM_MHZ};
 use endat_hdl::protocols::ssi::cause;
@@ -7,7 +7,7 @@ use endat_sim::ssi::{Defect, EncoderConfig};
 use endat_sim::US;
 
 const PERIOD: u64 = 20;
-/// Width that the port is set to.
+/// Configured width of the port.
 const WIDTH: u32 = 25;
 
 fn start(encoder_bits: u32, repeats: bool, twice: bool) -> Run {
@@ -27,12 +27,12 @@ fn start(encoder_bits: u32, repeats: bool, twice: bool) -> Run {
     run
 }
 
-/// Bit of an encoder's word, the first one that is sent first.
+/// Bit of an encoder's word; the first one is sent first.
 fn bit(position: u64, encoder_bits: u32, place: u32) -> bool {
     position >> (encoder_bits - 1 - place) & 1 == 1
 }
 
-/// What is on the line where DATA should be LOW after the last bit: HIGH shows the wrong width.
+/// Level of the line where DATA should be LOW after the last bit: HIGH shows the wrong width.
 fn is_high_at_the_end(position: u64, encoder_bits: u32, repeats: bool) -> bool {
     match encoder_bits {
         // The next one of its bits.
@@ -43,7 +43,7 @@ fn is_high_at_the_end(position: u64, encoder_bits: u32, repeats: bool) -> bool {
     }
 }
 
-/// Triggers with random positions; gives how many were taken, and checks that those are exactly the ones that the line does not show.
+/// Triggers with random positions; returns the number of accepted ones, and checks that exactly the undetectable ones were accepted.
 fn taken(encoder_bits: u32, repeats: bool, frames: u32) -> u32 {
     let mut rng = Rng::new(u64::from(encoder_bits));
     let mut run = start(encoder_bits, repeats, false);
@@ -60,11 +60,11 @@ fn taken(encoder_bits: u32, repeats: bool, frames: u32) -> u32 {
         };
         let what = format!("{encoder_bits} bits, repeats {repeats}, {position:#x}");
         assert_eq!(run.get("cause"), u128::from(told), "{what}");
-        // What a shaft that is turned would show: fewer bits have zeros after them, and of more bits the upper ones are taken.
+        // Expected reading: fewer bits are followed by zeros, and of more bits the upper ones are read.
         let shown = match WIDTH.checked_sub(encoder_bits) {
             None => position >> (encoder_bits - WIDTH),
             Some(fewer) if !repeats => position << fewer,
-            // After the LOW cell the second copy begins.
+            // The second copy begins after the LOW cell.
             Some(fewer) => position << fewer | position >> (encoder_bits + 1 - fewer),
         };
         assert_eq!(run.fresh(), (!is_seen).then_some(shown), "{what}");
@@ -73,8 +73,8 @@ fn taken(encoder_bits: u32, repeats: bool, frames: u32) -> u32 {
     taken
 }
 
-/// Without `twice` the cell after the last bit is all that there is: an encoder with fewer bits that stays LOW cannot be told from one with
-/// zeros at the end, everything else shows in half of the positions.
+/// Without `twice` only the cell after the last bit shows the width. An encoder with fewer bits that stays LOW looks like one with
+/// zeros at the end; every other wrong width shows in half of the positions.
 #[test]
 fn wrong_width_is_seen_where_the_cell_after_the_last_bit_is_high() {
     for encoder_bits in [23, 24] {
@@ -96,7 +96,7 @@ fn wrong_width_is_seen_where_the_cell_after_the_last_bit_is_high() {
     }
 }
 
-/// With `twice` it is seen in every frame, but for positions in which the shifted copies are the same.
+/// With `twice` it shows in every frame, except for positions whose shifted copies are equal.
 #[test]
 fn wrong_width_is_seen_in_every_frame_with_two_copies() {
     for encoder_bits in [22, 23, 24, 26, 27, 33] {
@@ -115,11 +115,11 @@ fn wrong_width_is_seen_in_every_frame_with_two_copies() {
     }
 }
 
-/// The positions of which `twice` says nothing: where the encoder stays LOW, 0 alone; where bits come in both copies, those that repeat as
-/// the copies do.
+/// The positions that `twice` does not detect: 0 alone if the encoder stays LOW; if both copies have bits, those that repeat like
+/// the copies.
 #[test]
 fn wrong_width_is_not_seen_where_the_shifted_copies_are_the_same() {
-    // Cells as they are clocked: the first 25 of them are compared with those from the 27th on.
+    // Cells in clock order: the first 25 of them are compared with those from the 27th on.
     let alike = |encoder_bits: u32, repeats: bool, position: u64| {
         let bits = (0..encoder_bits).map(|place| bit(position, encoder_bits, place));
         let copy: Vec<bool> = bits.chain([false]).collect();
@@ -154,7 +154,7 @@ fn wrong_width_is_not_seen_where_the_shifted_copies_are_the_same() {
     }
 }
 
-/// Nothing checks a single copy without a parity bit or a CRC.
+/// A single copy without a parity bit or a CRC has no check.
 #[test]
 fn disturbed_bit_of_a_single_copy_is_a_wrong_position() {
     let mut run = start(WIDTH, false, false);
@@ -168,7 +168,7 @@ fn disturbed_bit_of_a_single_copy_is_a_wrong_position() {
     }
 }
 
-/// DATA that is LOW at the first rising edge, before the first bit, is no encoder that has begun.
+/// DATA that is LOW at the first rising edge, before the first bit, means that the encoder has not started.
 #[test]
 fn data_that_falls_before_the_first_bit_is_reported() {
     let mut run = start(WIDTH, false, false);

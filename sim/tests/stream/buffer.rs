@@ -1,4 +1,4 @@
-//! The buffer: overflow, clear, on and off, readers of every kind.
+//! The buffer: overflow, clear, on and off, all kinds of readers.
 
 use super::rig::*;
 use endat_hdl::card::stream::buffer::{frame_bytes, BUFFER_BYTES};
@@ -12,7 +12,7 @@ fn channels(n: usize, position: u64) -> Vec<Channel> {
     vec![one; n]
 }
 
-/// A set that is written before anything else happens.
+/// A set that is written before the test continues.
 fn whole(rig: &mut Rig, position: u64) -> Set {
     let set = rig.set_of(&channels(rig.set.len(), position));
     rig.written();
@@ -32,8 +32,8 @@ fn read_bytes(rig: &mut Rig, lane: &mut u8, count: usize) -> Vec<u8> {
     (0..count).map(read).collect()
 }
 
-/// Fills the buffer with sets of so many channels. The reader has stopped at places of a frame that `is_wanted` chooses, by the place and
-/// the frame's length.
+/// Fills the buffer with sets of these channels. The reader stops at places of a frame that `is_wanted` selects by place and
+/// frame length.
 fn fill(all_channels: &[usize], is_wanted: impl Fn(usize, usize) -> bool) {
     for &n in all_channels {
         let frame = frame_bytes(n, false) as usize;
@@ -80,7 +80,7 @@ fn a_set_that_does_not_fit_is_dropped_whole() {
     });
 }
 
-/// The reader stops at every place of a frame, so the buffer is at every level when a set comes.
+/// The reader stops at every place of a frame, so a set meets every fill level of the buffer.
 #[test]
 #[ignore = "slow: every place in a frame"]
 fn what_does_not_fit_is_dropped_whole_at_every_fill_level() {
@@ -91,7 +91,7 @@ fn carry_many_times_their_bytes(sizes: impl Iterator<Item = u64>) {
     for bytes in sizes {
         let mut rig = Rig::new(bytes, 2, true, true);
         let mut expected = Vec::new();
-        // First as full as it can be, then round and round.
+        // First completely full, then with wrapping addresses.
         for i in 0..bytes / 28 + 20 {
             let set = rig.set_of(&channels(2, i));
             rig.written();
@@ -150,7 +150,7 @@ fn a_stuck_reader_loses_sets_and_nothing_else() {
 #[test]
 fn the_count_of_lost_sets_stops_at_its_end() {
     let mut rig = Rig::new(1024, 1, true, false);
-    // A set in each pair of cycles; no channel takes part. One is written in 400 cycles.
+    // A set in each pair of cycles, without a channel. Writing one takes 400 cycles.
     rig.channel[0].busy = true;
     for _ in 0..70_000 {
         rig.trigger = true;
@@ -170,7 +170,7 @@ fn an_empty_buffer_reads_as_zeros_and_another_word_takes_nothing() {
     rig.write(word::DATA, 0xffff_ffff);
     rig.access = Some(Access::Elsewhere);
     rig.step();
-    assert_eq!(rig.stream.get("read_byte"), 0, "of another word");
+    assert_eq!(rig.stream.get("read_byte"), 0, "another word");
     rig.run(3);
     assert_eq!(rig.read(word::CONTROL), 1);
     assert_eq!(rig.read(word::STATE), 28);
@@ -183,7 +183,7 @@ fn the_state_is_of_one_moment() {
     for i in 0..10 {
         whole(&mut rig, i);
     }
-    // 280 bytes = 0x118; while its bytes are read the line takes 40.
+    // 280 bytes = 0x118; the line takes 40 while its bytes are read.
     let mut bytes = [0; 4];
     for (lane, byte) in (0u8..).zip(&mut bytes) {
         let word = word::STATE;
@@ -225,7 +225,7 @@ fn collect_decides_at_the_trigger() {
     assert_eq!(rig.read(word::CONTROL), 0);
 }
 
-/// Lets the line take `count` bytes.
+/// Sends `count` bytes over the line.
 fn push_some(rig: &mut Rig, count: usize) {
     let end = rig.pushed.len() + count;
     for _ in 0..count * 10 {
@@ -247,7 +247,7 @@ fn push_switched_off_or_cleared_in_mid_frame_ends_the_frame_first() {
             } else {
                 rig.write(word::CONTROL, 1);
             }
-            // The register takes nothing out while the frame is on its way.
+            // The register gets no byte while the frame is being sent.
             if (1..28).contains(&taken) {
                 assert_eq!(rig.read(word::DATA), 0, "{taken}");
             }
@@ -261,7 +261,7 @@ fn push_switched_off_or_cleared_in_mid_frame_ends_the_frame_first() {
             );
             let left = if clear { 0 } else { 3 - whole_frames };
             assert_eq!(rig.read(word::STATE) as usize, 28 * left, "{taken} {clear}");
-            // What comes then is whole again.
+            // The next frame is complete again.
             let next = whole(&mut rig, 77);
             rig.write(word::CONTROL, 3);
             rig.push_all(5);
@@ -289,7 +289,7 @@ fn a_frame_that_the_host_has_read_half_of_is_not_pushed_and_a_clear_ends_it() {
             };
             if clear {
                 rig.write(word::CLEAR, 1);
-                // Nothing is read in between, however long it takes.
+                // No reads in between, for any time.
                 assert!(read_bytes(&mut rig, &mut lane, 20).iter().all(|b| *b == 0));
                 rig.run(200);
                 assert_eq!(rig.read(word::STATE), 0);

@@ -1,4 +1,4 @@
-//! A whole card that streams: full rate, answers in between, switching, overflow.
+//! A complete card with a stream: full rate, interleaved answers, switching, overflow.
 
 use super::line::{card, words_of, Item, Line};
 use super::rig::{Set, FRESH, MISSING, TAKEN, VALID};
@@ -8,10 +8,10 @@ use endat_hdl::regs::{CARD, CARD_CONFIG, VERSION};
 /// Cause of a result whose channel has missed a trigger.
 const OVERRUN: u16 = endat_hdl::endat::transaction::cause::TRIGGER_OVERRUN as u16;
 
-/// Sets of a run without loss: whole, consecutive from the first trigger on, at the timer's distance, with the encoders' positions.
-/// The first frame measures the delay, slowly: until then a channel may be missing, or busy. The number of sets after that.
+/// Sets of a run without loss: complete, consecutive from the first trigger on, at the timer period, with the encoders' positions.
+/// The first frame measures the delay slowly, so at first a channel may be missing, or busy. Returns the number of sets after that.
 fn check(line: &Line, sets: &[Set], period: u64) -> usize {
-    // The first one has measured.
+    // The first frame has measured.
     let mut frames = [1; 2];
     let mut good = 0;
     for (n, set) in sets.iter().enumerate() {
@@ -21,7 +21,7 @@ fn check(line: &Line, sets: &[Set], period: u64) -> usize {
         for (channel, part) in set.parts.iter().enumerate() {
             let frame = line.bench.frames(channel).get(frames[channel]);
             frames[channel] += usize::from(part.status & TAKEN != 0);
-            // Triggers that came meanwhile are told with the next good result.
+            // The next good result reports triggers lost meanwhile.
             let overrun = if n < 6 { OVERRUN } else { 0 };
             if part.status & !overrun == TAKEN | VALID | FRESH {
                 assert_eq!(part.position, frame.unwrap().position, "{n} {channel}");
@@ -52,7 +52,7 @@ fn version() -> u32 {
     major << 24 | minor << 16 | patch
 }
 
-/// Samples a second, baud, and sets to wait for.
+/// Sample rates, baud rates, and numbers of sets.
 fn sets_come(rates: &[(u64, u64, u64)]) {
     for &(sample_hz, baud, sets_wanted) in rates {
         let config = card(96_000_000, sample_hz, baud, Push);
@@ -60,7 +60,7 @@ fn sets_come(rates: &[(u64, u64, u64)]) {
         let period = config.sample_period_cycles;
         let mut reads = 0;
         for n in 0..sets_wanted {
-            // Anywhere within a period; what is asked for fits into the gaps.
+            // Anywhere within a period; the answers fit into the gaps.
             line.run(n * 37 % period);
             match n % 10 {
                 3 if n % 20 == 3 => line.read(2, 0, 2),
@@ -83,7 +83,7 @@ fn sets_come(rates: &[(u64, u64, u64)]) {
         for answer in answers.iter().filter(|a| a.len() == 14) {
             assert_eq!(answer[3], answer[11], "both of one trigger");
         }
-        // The falling edge comes a constant few cycles behind the set's moment.
+        // The falling edge comes a constant few cycles after the set's time.
         let results = answers.iter().filter(|a| a.len() == 14 && a[3] != 0);
         let behind = results.filter_map(|a| {
             let set = sets.iter().rfind(|s| s.timestamp <= a[3])?;
@@ -111,7 +111,7 @@ fn every_set_comes_at_every_full_rate_with_register_accesses_in_between() {
 fn too_much_is_asked(reads: usize) {
     let config = card(96_000_000, 10_000, 3_000_000, Push);
     let mut line = Line::new(&config);
-    // All results again and again, one command after the other's answer: frames get less than their share.
+    // Reads all results repeatedly, one command after the other's answer: frames get less than their share.
     for n in 1..=reads {
         line.read(2, 0x180, 62);
         let mut waited = 0;
@@ -131,7 +131,7 @@ fn too_much_is_asked(reads: usize) {
         next += 1;
     }
     assert!(sets.iter().any(|s| s.lost > 0));
-    // When it stops asking, all of them come again.
+    // After it stops reading, all sets arrive again.
     assert!(sets[sets.len() - 20..].iter().all(|s| s.lost == 0));
 }
 
@@ -150,7 +150,7 @@ fn a_host_that_asks_for_too_much_loses_whole_sets_and_sees_it() {
 fn switching_off_leaves_the_plain_link_and_marks_the_first_answer() {
     let config = card(96_000_000, 10_000, 3_000_000, Off);
     let mut line = Line::new(&config);
-    // Plain before anything is switched on.
+    // Without stream at first.
     line.read(2, 0, 1);
     line.settle(100);
     assert_eq!(line.heard, 0x456e_4474u32.to_be_bytes());
@@ -168,7 +168,7 @@ fn switching_off_leaves_the_plain_link_and_marks_the_first_answer() {
         assert_eq!(answers, [[0x456e_4474]]);
         assert!(matches!(items.last(), Some(Item::Answer(_))), "{delay}");
         assert!(items.len() >= 4);
-        // From here on nothing but UARTBone.
+        // From here on only UARTBone.
         line.read(2, 1, 1);
         line.settle(600);
         assert_eq!(line.heard, version().to_be_bytes());
@@ -198,7 +198,7 @@ fn a_client_that_polls_gets_the_same_stream() {
     let sets = Set::all(&bytes);
     assert!(sets.len() > 30, "{}", sets.len());
     assert!(check(&line, &sets, config.sample_period_cycles) > 30);
-    // A stuck client: the buffer fills, then sets are lost and counted.
+    // A blocked client: the buffer fills, then sets are lost and counted.
     line.run(100 * config.sample_period_cycles);
     line.heard.clear();
     line.read(2, 0x00d, 1);

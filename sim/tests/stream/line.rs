@@ -1,4 +1,4 @@
-//! A card with a stream, its encoders, and a host at its UART that sends and hears at the same time.
+//! A card with a stream, its encoders, and a host at its UART that sends and receives at the same time.
 
 use super::rig::Set;
 use endat_hdl::protocols::Spoken;
@@ -18,14 +18,14 @@ use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
 use std::collections::VecDeque;
 
-/// What can stand on the line.
+/// Items on the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Item {
     Set(Set),
     Answer(Vec<u32>),
 }
 
-/// The host: what it still sends, what it has heard.
+/// The host: queued and received bytes.
 pub struct Line {
     pub bench: Bench<Compiled>,
     bit: u64,
@@ -33,10 +33,10 @@ pub struct Line {
     tx: PortId,
     out: VecDeque<bool>,
     hold: u64,
-    /// Cycles of the byte that is coming, and what is known of it.
+    /// Cycles of the byte being received, and its bits so far.
     coming: Option<(u64, u8)>,
     pub heard: Vec<u8>,
-    /// Words that each answer will have, in order.
+    /// Expected number of words of each answer, in order.
     pub asked: VecDeque<usize>,
 }
 
@@ -170,7 +170,7 @@ impl Line {
         self.asked.push_back(words);
     }
 
-    /// Runs until nothing more is to be sent and nothing has come for `bits` bit times.
+    /// Runs until nothing is queued and nothing has arrived for `bits` bit times.
     pub fn settle(&mut self, bits: u64) {
         let mut quiet = 0;
         while quiet < bits * self.bit {
@@ -180,7 +180,7 @@ impl Line {
         }
     }
 
-    /// Whole answers that have been heard so far.
+    /// Number of complete answers received so far.
     pub fn answers_heard(&self) -> usize {
         let (mut rest, mut count) = (&self.heard[..], 0);
         while !rest.is_empty() {
@@ -197,15 +197,12 @@ impl Line {
         count
     }
 
-    /// What has been heard, while answers are marked.
+    /// Received items, while answers are marked.
     pub fn marked(&mut self) -> Vec<Item> {
         let (mut items, mut rest) = (Vec::new(), &self.heard[..]);
         while !rest.is_empty() {
             if rest[0] == 0xff {
-                let words = self
-                    .asked
-                    .pop_front()
-                    .expect("an answer that nobody asked for");
+                let words = self.asked.pop_front().expect("an unexpected answer");
                 items.push(Item::Answer(words_of(&rest[1..1 + 4 * words])));
                 rest = &rest[1 + 4 * words..];
             } else {

@@ -1,4 +1,4 @@
-//! The stream of sample sets: sets, buffer, registers and push, alone and in a card.
+//! The stream of sample sets: sets, buffer, registers and push, as blocks and in a card.
 
 mod buffer;
 mod card;

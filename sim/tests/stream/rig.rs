@@ -1,4 +1,4 @@
-//! A stream with its channels, driven cycle by cycle; and its frames read back with the `cobs` and `crc` crates.
+//! A stream with its channels, driven cycle by cycle; the `cobs` and `crc` crates decode its frames.
 
 use crate::three_way::Stimulus;
 use crc::{Crc, CRC_16_IBM_3740};
@@ -9,7 +9,7 @@ use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
 use std::collections::HashMap;
 
-/// CRC of a set, by other code than the core's.
+/// CRC of a set, independent of the core.
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
 
 /// Words of the stream.
@@ -33,7 +33,7 @@ pub const VALID: u16 = 1 << 6;
 pub const FRESH: u16 = 1 << 7;
 pub const MISSING: u16 = 1 << 15;
 
-/// A set as a host sees it.
+/// A set as decoded by a host.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Set {
     pub lost: u8,
@@ -43,7 +43,7 @@ pub struct Set {
 }
 
 impl Set {
-    /// The frame that it must become.
+    /// The expected frame.
     pub fn frame(&self) -> Vec<u8> {
         let mut bytes = vec![0x10 | self.parts.len() as u8, self.lost];
         bytes.extend(self.sequence.to_le_bytes());
@@ -58,7 +58,7 @@ impl Set {
         frame
     }
 
-    /// What a frame (without its zero) means; the text says what is wrong with it.
+    /// Decodes a frame (without its zero); the error describes the problem.
     pub fn decode(frame: &[u8]) -> Result<Self, String> {
         let bytes = cobs::decode_vec(frame).map_err(|e| format!("COBS: {e:?}"))?;
         let (head, channels) = (bytes[0], usize::from(bytes[0] & 15));
@@ -81,7 +81,7 @@ impl Set {
         })
     }
 
-    /// All sets of a stream that ends with a frame's end; empty frames mean nothing.
+    /// All sets of a stream that ends with the end of a frame; empty frames are ignored.
     pub fn all(stream: &[u8]) -> Vec<Self> {
         assert_eq!(stream.last().copied().unwrap_or(0), 0, "half a frame");
         let frames = stream.split(|b| *b == 0).filter(|f| !f.is_empty());
@@ -129,7 +129,7 @@ impl Named {
     }
 }
 
-/// What a channel shows.
+/// Outputs of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Channel {
     pub busy: bool,
@@ -138,7 +138,7 @@ pub struct Channel {
     pub position: u64,
     /// As in a set, without the bits `TAKEN` and `MISSING`.
     pub status: u16,
-    /// The position is not the one that its parity is of.
+    /// The position does not match its parity.
     pub is_upset: bool,
 }
 
@@ -153,11 +153,11 @@ pub enum Access {
         word: u8,
         value: u32,
     },
-    /// Of another part of the card.
+    /// Another part of the card.
     Elsewhere,
 }
 
-/// Everything around a stream.
+/// Environment of a stream.
 pub struct Rig {
     pub stream: Named,
     pub set: Vec<Named>,
@@ -165,9 +165,9 @@ pub struct Rig {
     /// A trigger in the next cycle.
     pub trigger: bool,
     pub access: Option<Access>,
-    /// The line would take a byte in the next cycle.
+    /// The line accepts a byte in the next cycle.
     pub line_free: bool,
-    /// What the line took.
+    /// Bytes accepted by the line.
     pub pushed: Vec<u8>,
     pub triggers: u32,
     pub timestamp: u32,
@@ -180,7 +180,7 @@ impl Rig {
         Self::with(bytes, channels, [collect, push], false)
     }
 
-    /// One that collects, on a card whose channels have triggers of their own.
+    /// A collecting stream, on a card with separate channel triggers.
     pub fn with_late_results(bytes: u64, channels: usize) -> Self {
         Self::with(bytes, channels, [true, false], true)
     }
@@ -210,7 +210,7 @@ impl Rig {
         }
     }
 
-    /// As after power-up, but for what the memory holds: a new rig takes long.
+    /// As after power-up, except for the memory content: a new rig takes long.
     pub fn reset(&mut self) {
         for part in self.set.iter_mut().chain([&mut self.stream]) {
             part.set("reset", true);
@@ -224,7 +224,7 @@ impl Rig {
         self.triggers = 0;
     }
 
-    /// From now on what the blocks are given is kept.
+    /// From now on the inputs of the blocks are recorded.
     pub fn record(&mut self) {
         for part in self.set.iter_mut().chain([&mut self.stream]) {
             let inputs = part.engine.ports().iter().filter(|p| p.is_input);
@@ -235,7 +235,7 @@ impl Rig {
         }
     }
 
-    /// What was kept: of the stream, and of each channel.
+    /// The recordings of the stream, and of each channel.
     pub fn recorded(self) -> Vec<Stimulus> {
         let parts = [self.stream].into_iter().chain(self.set);
         parts.filter_map(|part| part.record).collect()
@@ -303,7 +303,7 @@ impl Rig {
         (0..cycles).for_each(|_| self.step());
     }
 
-    /// A word, byte by byte with some cycles between, as a bus reads it.
+    /// A word, byte by byte with some cycles between, as on a bus.
     pub fn read(&mut self, word: u8) -> u32 {
         let mut bytes = [0; 4];
         for (lane, byte) in bytes.iter_mut().enumerate() {
@@ -322,7 +322,7 @@ impl Rig {
         self.step();
     }
 
-    /// Reads words from `stream_data` until nothing waits.
+    /// Reads words from `stream_data` until the buffer is empty.
     pub fn drain(&mut self) -> Vec<u8> {
         let mut bytes = Vec::new();
         while self.read(word::STATE) & 0xffff != 0 {
@@ -331,7 +331,7 @@ impl Rig {
         bytes
     }
 
-    /// Takes all that is pushed, a byte every `gap` cycles.
+    /// Accepts all pushed bytes, one every `gap` cycles.
     pub fn push_all(&mut self, gap: u64) {
         let mut idle = 0;
         while idle < 8 {
@@ -347,7 +347,7 @@ impl Rig {
         }
     }
 
-    /// A trigger that all channels take, and their results; the set when it is written.
+    /// A trigger that all channels accept, and their results; returns the written set.
     pub fn set_of(&mut self, channels: &[Channel]) -> Set {
         self.channel.iter_mut().for_each(|c| c.busy = false);
         self.trigger = true;
@@ -376,7 +376,7 @@ impl Rig {
         }
     }
 
-    /// Long enough for a set to be written.
+    /// Waits until a set has been written.
     pub fn written(&mut self) {
         self.run(endat_hdl::card::stream::buffer::frame_cycles(self.set.len(), false) + 4);
     }

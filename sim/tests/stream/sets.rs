@@ -1,4 +1,4 @@
-//! What is in a set, and what never gets into one.
+//! Content of a set.
 
 use super::rig::*;
 use endat_hdl::endat::transaction::cause;
@@ -52,15 +52,15 @@ fn a_frame_is_what_cobs_and_crc_make_of_the_set() {
     }
 }
 
-/// What is known of a trigger.
+/// Record of a trigger.
 struct Truth {
     timestamp: u32,
     parts: Vec<Part>,
-    /// First result came, and when.
+    /// First result received, and its time.
     closed: bool,
 }
 
-/// One of the cycles of a random life of a channel.
+/// One cycle in the random life of a channel.
 #[derive(Default, Clone, Copy)]
 struct Life {
     result_in: Option<u32>,
@@ -68,8 +68,8 @@ struct Life {
     extra_in: Option<u32>,
 }
 
-/// Triggers, results, readers at random; every set that comes must be the truth about its trigger, and every trigger either comes or
-/// is told as lost.
+/// Random triggers, results and readers: every received set must match its trigger, and every trigger is received or
+/// reported as lost.
 fn random_life(channels: usize, seed: u64, gap: u32, push: bool, continuous: bool) {
     let mut state = seed | 1;
     let mut random = move |below: u32| {
@@ -97,7 +97,7 @@ fn random_life(channels: usize, seed: u64, gap: u32, push: bool, continuous: boo
             rig.trigger = !is_over;
         }
         for (n, (life, channel)) in life.iter_mut().zip(&mut rig.channel).enumerate() {
-            // An additional result of a channel whose clock goes on.
+            // An additional result of a channel with a continuous clock.
             let mut result = false;
             for due in [&mut life.result_in, &mut life.extra_in] {
                 *due = match *due {
@@ -116,7 +116,7 @@ fn random_life(channels: usize, seed: u64, gap: u32, push: bool, continuous: boo
                     position: channel.position,
                     status: channel.status | TAKEN,
                 };
-                // The first result after the trigger, until the set is closed by the next one.
+                // The first result after the trigger, until the next trigger closes the set.
                 if let Some(last) = truth.last_mut().filter(|t| !t.closed) {
                     if last.parts[n].status == TAKEN | MISSING {
                         last.parts[n] = part;
@@ -175,7 +175,7 @@ fn random_life(channels: usize, seed: u64, gap: u32, push: bool, continuous: boo
     }
     let lost = truth.len() - sets.len();
     assert!(sets.len() > 3, "{} sets", sets.len());
-    // The last set may still be open, or lost with no other behind to tell; the count knows all but the open one.
+    // The last set may still be open, or lost without a later one to report it; the count includes all except the open one.
     let counted = (rig.read(word::STATE) >> 16) as usize;
     assert!(
         counted == lost || counted + 1 == lost,
@@ -247,7 +247,7 @@ fn the_next_trigger_closes_a_set_and_marks_who_is_missing() {
         }
         rig.step();
         rig.channel[0].busy = true;
-        // Too late for the first set, and not of the second.
+        // Too late for the first set, and not part of the second.
         result(&mut rig, 1, 0x33);
         rig.run(100);
         result(&mut rig, 0, 0x44);
@@ -274,7 +274,7 @@ fn the_next_trigger_closes_a_set_and_marks_who_is_missing() {
     }
 }
 
-/// A trigger, taken or not, and so many cycles.
+/// A trigger, accepted or not, and some cycles.
 fn trigger(rig: &mut Rig, busy: bool, cycles: u64) {
     rig.channel[0].busy = busy;
     rig.trigger = true;
@@ -283,7 +283,7 @@ fn trigger(rig: &mut Rig, busy: bool, cycles: u64) {
     rig.run(cycles - 1);
 }
 
-/// Trigger A is missing in its set, and its result waits for a place; B's set is lost, B's result is there: it is none of A's.
+/// Trigger A is missing in its set, and its result waits for a place. B's set is lost, and B's result is not taken for that of A.
 #[test]
 fn a_late_result_is_never_that_of_a_trigger_whose_set_is_lost() {
     let mut rig = Rig::with_late_results(1024, 1);
@@ -296,7 +296,7 @@ fn a_late_result_is_never_that_of_a_trigger_whose_set_is_lost() {
     result(&mut rig, 0, 0xB);
     rig.run(600);
     trigger(&mut rig, true, 600);
-    // One that is late, and has its place in the next set.
+    // A late one with a place in the next set.
     trigger(&mut rig, false, 600); // D
     trigger(&mut rig, true, 600);
     result(&mut rig, 0, 0xD);
@@ -318,7 +318,7 @@ fn a_late_result_is_never_that_of_a_trigger_whose_set_is_lost() {
     assert_eq!(lost, [0, 0, 1, 0, 0, 0, 0]);
 }
 
-/// Catches a set that tells a position as good that an upset has changed while it waited for the buffer.
+/// Catches a set with a position reported as good that an upset has changed while the set waited for the buffer.
 #[test]
 fn a_position_that_is_not_of_its_parity_is_told_as_upset() {
     let mut rig = two();
@@ -366,7 +366,7 @@ fn a_result_that_replaces_that_of_the_trigger_loses_the_set() {
     result(&mut rig, 1, 3);
     rig.written();
     assert_eq!(rig.read(word::STATE), 1 << 16);
-    // In the very cycle in which the set would be taken, too.
+    // Also in the cycle in which the set would be taken.
     rig.channel.iter_mut().for_each(|c| c.busy = false);
     rig.trigger = true;
     rig.step();

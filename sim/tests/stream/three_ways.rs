@@ -1,4 +1,4 @@
-//! Stream, a channel's part and a whole card with a stream: kernels, engines and emitted Verilog agree in every cycle.
+//! Stream, a channel's part and a complete card with a stream: kernels, engines and emitted Verilog agree in every cycle.
 
 use super::rig::{Access, Channel, Rig};
 use crate::three_way::{three_way, Stimulus};
@@ -8,7 +8,7 @@ use rtl_design::elaborate::elaborate;
 use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 
-/// Numbers that are the same each time.
+/// Reproducible numbers.
 fn random() -> impl FnMut(u32) -> u32 {
     let mut state = 0x1234_5678_9abc_def1u64;
     move |below| {
@@ -19,7 +19,7 @@ fn random() -> impl FnMut(u32) -> u32 {
     }
 }
 
-/// What both blocks were given in a random life with everything in it.
+/// Inputs of both blocks in a random life with all kinds of events.
 fn recorded() -> (Stimulus, Stimulus) {
     let mut random = random();
     let mut rig = Rig::new(1024, 1, true, false);
@@ -41,7 +41,7 @@ fn recorded() -> (Stimulus, Stimulus) {
         rig.access = match random(30) {
             0 => Some(Access::Elsewhere),
             1..4 => Some(Access::Read { word, lane }),
-            // Clear is rare, so that something is in the buffer.
+            // Clear is rare, so that the buffer is usually not empty.
             4 if word < 3 || random(8) == 0 => Some(Access::Write {
                 word,
                 value: random(4) | u32::from(cycle % 1000 < 500),
@@ -65,7 +65,7 @@ fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
         out take_set, block, byte_at, read_byte;
         bundles pushed);
     let recording = three_way("stream", &mut kernel, &design, &stream).unwrap();
-    // Something has happened.
+    // The recording is not trivial.
     let pushed = recording.output("push_byte");
     assert!(pushed.contains(&0x11), "the head of a set");
     assert!(recording.output("take_set").iter().sum::<u128>() > 5);

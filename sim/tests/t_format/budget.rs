@@ -1,5 +1,5 @@
-//! Single upsets of every flip-flop at every moment of every kind of exchange, in lanes: no wrong position in silence, no hang,
-//! nobody drives against the encoder, and no byte of an EEPROM is written that nobody asked for.
+//! Single upsets of every flip-flop at every time of every kind of exchange, in lanes: no undetected wrong position, no hang,
+//! no driver conflict with the encoder, and no unrequested write to an EEPROM.
 
 use endat_hdl::protocols::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_hdl::protocols::t_format::port::TFormatPort;
@@ -12,25 +12,25 @@ use rust_hdl::prelude::Block;
 use std::collections::BTreeMap;
 
 const LANES: usize = 128;
-/// Moments of an exchange at which each flip-flop is upset in the slow tests, and in the quick ones.
+/// Times of an exchange at which each flip-flop is upset in the slow tests, and in the quick ones.
 const MOMENTS: u64 = 65;
 const FEW_MOMENTS: u64 = 3;
 const SYSTEM_MHZ: u64 = 20;
-/// From the beginning of an exchange until its result is looked at.
+/// Time from the start of an exchange until its result is read.
 const EXCHANGE_US: u64 = 95;
-/// Behind what was upset, for an encoder that still answers and a line that has to be at rest.
+/// Time after an upset, for an encoder that still answers and a line that must be at rest.
 const QUIET_US: u64 = 60;
-/// Exchanges that may be lost or bad after one that was upset.
+/// Exchanges that may be lost or bad after an upset.
 const TRIGGERS: usize = 2;
-/// The longest request: four fields, and the microseconds that a wait may last longer.
+/// The longest request: four fields, and the microseconds by which a wait may be longer.
 const REQUEST_US: u64 = 4 * 4 + 3;
-/// What an upset may make of a request on the wire is one of a single field: its reply comes while the other three are sent.
+/// An upset may turn a request on the wire into one with a single field: its reply arrives while the other three are sent.
 const GARBLED_US: u64 = 3 * 4;
-/// Silent wrong positions of all flips, in parts per thousand.
+/// Undetected wrong positions of all flips, in parts per thousand.
 const SILENT_PER_MILLE: usize = 5;
 const BEFORE: u64 = 0x1234_56A5_3C96;
 
-/// What is exchanged while an upset comes.
+/// Exchange during an upset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Single,
@@ -59,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// The position while it is exchanged.
+    /// The position during the exchange.
     fn position(self) -> u64 {
         match self {
             Self::Single => BEFORE & !0xFF_FFFF | 0x5A_C369,
@@ -73,21 +73,21 @@ const ADDRESS: u64 = 5;
 const DATA: u64 = 0x5A;
 const ASKED: [u8; 4] = [0x32, 0x05, 0x5A, 0x32 ^ 0x05 ^ 0x5A];
 
-/// What a lane shows.
+/// Outputs of a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Shown {
     position: u64,
     valid: [bool; 2],
     fresh: bool,
     cause: u64,
-    /// Results so far, where there is a count.
+    /// Number of results so far, if there is a count.
     sequence: u64,
-    /// The request that it is of, where that is shown.
+    /// The request of the result, if shown.
     id: u64,
 }
 
 impl Shown {
-    /// The parts that are shown as good are those of one of these positions.
+    /// The parts shown as good belong to one of these positions.
     fn is_one_of(&self, positions: &[u64]) -> bool {
         let part = |word: u64, part: usize| word >> (24 * part) & 0xFF_FFFF;
         (0..2).all(|p| {
@@ -97,7 +97,7 @@ impl Shown {
     }
 }
 
-/// The receiver in all lanes, an encoder on each.
+/// The receiver in all lanes, with an encoder each.
 #[derive(Clone)]
 struct Many {
     lanes: Lanes,
@@ -114,7 +114,7 @@ struct Many {
     driven_since: Vec<u64>,
     longest_drive: Vec<u64>,
     conflict: Vec<u64>,
-    /// Cycle, lane, register and bit of what is upset.
+    /// Cycle, lane, register and bit of the upsets.
     flips: Vec<(u64, usize, usize, usize)>,
 }
 
@@ -186,7 +186,7 @@ impl Many {
             conflict: vec![0; LANES],
             flips: vec![],
         };
-        // After power-up no request goes out.
+        // After power-up no request is sent.
         many.us(70);
         many.begin(3);
         many.us(EXCHANGE_US);
@@ -197,7 +197,7 @@ impl Many {
         self.cycle * (1_000_000 / SYSTEM_MHZ)
     }
 
-    /// A lane's encoder has done something, or may have.
+    /// A lane's encoder has acted, or may have.
     fn look(&mut self, lane: usize) {
         let (part, bit) = (lane / 64, 1u64 << (lane % 64));
         let encoder = &self.encoders[lane];
@@ -213,7 +213,7 @@ impl Many {
         );
     }
 
-    #[allow(clippy::needless_range_loop)] // two arrays side by side
+    #[allow(clippy::needless_range_loop)] // two parallel arrays
     fn step(&mut self) {
         while let Some((_, lane, register, bit)) =
             self.flips.pop_if(|(cycle, ..)| *cycle <= self.cycle)
@@ -318,7 +318,7 @@ impl Many {
         words
     }
 
-    /// A request of this ID, by whom it is for.
+    /// A request with this ID.
     fn begin(&mut self, id: u64) {
         if !self.is_card {
             if id == 6 || id == 13 {
@@ -387,7 +387,7 @@ impl Many {
     }
 }
 
-/// What became of the flips of one register.
+/// Results of the flips of one register.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     flips: usize,
@@ -399,7 +399,7 @@ struct Tally {
     unasked: usize,
 }
 
-/// Upsets everything in all kinds of exchange.
+/// Upsets all registers in all kinds of exchange.
 fn campaign(is_card: bool, moments: u64) -> BTreeMap<String, Tally> {
     let base = Many::new(is_card);
     let names: Vec<String> = base.lanes.nets().map(String::from).collect();
@@ -408,7 +408,7 @@ fn campaign(is_card: bool, moments: u64) -> BTreeMap<String, Tally> {
     for kind in Kind::ALL {
         let mut rng = Rng::new(kind.id() + 1);
         let mut plan = vec![];
-        // How long it takes, and what it shows without an upset.
+        // Duration, and outputs without an upset.
         let begin = base.cycle;
         let mut plain = base.clone();
         plain.turn_to(kind.position());
@@ -428,7 +428,7 @@ fn campaign(is_card: bool, moments: u64) -> BTreeMap<String, Tally> {
                 }
             }
         }
-        // Lanes of a batch are upset at like moments.
+        // Lanes of a batch are upset at similar times.
         for batch in plan.chunks(LANES) {
             let mut many = base.clone();
             let flips = batch.iter().enumerate();
@@ -447,12 +447,12 @@ fn campaign(is_card: bool, moments: u64) -> BTreeMap<String, Tally> {
                 let it = seen[lane];
                 let is_whole = it.fresh && it.valid == [true; 2] && it.id == good.id;
                 is_told[lane] = it.cause != 0 || !is_whole;
-                // An exchange that never was does not count as a result.
+                // An exchange that did not take place is no result.
                 let is_counted = !is_card || it.sequence != good.sequence;
                 is_silent[lane] = !it.is_one_of(&[BEFORE, kind.position()])
                     || (!is_told[lane] && is_counted) && !it.is_one_of(&[kind.position()]);
             }
-            // And how it goes on.
+            // The exchanges after it.
             let mut good_at_last = [false; LANES];
             for turn in 0..=TRIGGERS {
                 let position = 0x2222_2211_1111 * (1 + turn as u64);
@@ -496,7 +496,7 @@ fn campaign(is_card: bool, moments: u64) -> BTreeMap<String, Tally> {
     tallies
 }
 
-/// Holds the budgets; what `elsewhere` begins with has its own test.
+/// Checks the budgets; names that begin with `elsewhere` have a separate test.
 fn holds(is_card: bool, elsewhere: &str, moments: u64) {
     let tallies = campaign(is_card, moments);
     let sum = |of: fn(&Tally) -> usize| tallies.values().map(of).sum::<usize>();
@@ -527,7 +527,7 @@ fn holds(is_card: bool, elsewhere: &str, moments: u64) {
     assert_eq!(none, 0, "{table}");
 }
 
-/// The snapshot is that of every protocol.
+/// All protocols share the snapshot.
 const SNAPSHOT: &str = "snapshot.";
 
 #[test]

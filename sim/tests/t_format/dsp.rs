@@ -33,7 +33,7 @@ fn data_are_valid_four_clocks_after_the_address_and_held_for_five() {
     let expected: Vec<u16> = (0..7).map(|address| rig.read(address)).collect();
     (rig.pins.cs_n, rig.pins.rd_n, rig.pins.address) = (false, false, 7);
     rig.steps(10);
-    // Each address stands for five clocks; what is seen before each clock.
+    // Each address is held for five clocks; records the data before each clock.
     let mut seen = vec![];
     for address in 1..7 {
         rig.pins.address = address;

@@ -1,4 +1,4 @@
-//! Each thing that can go wrong has its cause, spoils no position and hangs nothing.
+//! Each fault has its cause, affects no position and hangs nothing.
 
 use super::rig::{Map, Rig};
 use endat_hdl::protocols::t_format::{cause, protocol::Request};
@@ -14,7 +14,7 @@ fn config(defect: Defect) -> EncoderConfig {
     }
 }
 
-/// A good exchange, one with the defect while the position moves on, and a good one again.
+/// A good exchange, one with the defect while the position changes, and a good one again.
 fn around(mhz: u64, id: u8, defect: Defect) -> Map {
     let mut rig = Rig::new(mhz, config(Defect::None));
     assert!(rig.exchange(3).fresh);
@@ -23,7 +23,7 @@ fn around(mhz: u64, id: u8, defect: Defect) -> Map {
     rig.encoder.config.defect = defect;
     let bad = rig.exchange(id);
     rig.encoder.config.defect = Defect::None;
-    // A line that was stuck has to be idle first.
+    // A line that was stuck must be idle first.
     rig.wait_us(20);
     let good = rig.exchange(3);
     assert_eq!(
@@ -57,7 +57,7 @@ fn every_cause_is_told_and_the_position_held() {
             cause::CONTROL_PARITY,
             1 << 4 | 1 << 5 | 1 << 6,
         ),
-        // As long as the right one.
+        // Same length as the right one.
         (Defect::OtherId(12), cause::ECHO, 1 << 5),
         (Defect::Delimiter { field: 0 }, cause::DELIMITER, 1 << 3),
         (Defect::Delimiter { field: 5 }, cause::DELIMITER, 1 << 3),
@@ -167,7 +167,7 @@ fn a_reply_is_taken_up_to_the_gap_that_is_set_and_refused_after_its_grace() {
                 } else if gap >= (set + 3) * US {
                     assert_eq!(map.cause, cause::NO_ANSWER, "{what}");
                 }
-                // A late reply comes now; nothing is sent into it.
+                // A late reply comes now; no request is sent during it.
                 rig.wait_us(gap / US + 100);
             }
             assert_eq!(rig.encoder.violations(), []);
@@ -253,7 +253,7 @@ fn nobody_on_the_line_gives_a_result_for_every_request() {
 
 #[test]
 fn after_a_fault_the_next_request_waits_for_an_idle_line() {
-    // Another, longer reply is still on the line when the fault is seen.
+    // Another, longer reply is still on the line when the fault is detected.
     let mut rig = Rig::new(20, config(Defect::Delimiter { field: 1 }));
     rig.write(0, 3);
     let map = rig.finish();

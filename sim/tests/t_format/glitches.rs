@@ -1,4 +1,4 @@
-//! Replies with several short pulses: those taken with a wrong position are at most the share that an ideal CRC of 8 bits lets through.
+//! Replies with several short pulses: the share of wrong positions is at most that of an ideal 8-bit CRC.
 
 use endat_hdl::protocols::t_format::{
     channel::TFormatChannel,
@@ -15,18 +15,18 @@ use std::sync::OnceLock;
 const LANES: usize = 128;
 const BIT: Time = 400_000;
 
-/// Pulses that are put on the line while a reply comes.
+/// Pulses on the line during a reply.
 #[derive(Clone, Copy, Debug)]
 struct Glitches {
     system_mhz: u64,
     pulses: [u64; 2],
     /// In ps.
     width: [Time; 2],
-    /// They turn the line over; otherwise they hold it at a level.
+    /// They invert the line; otherwise they hold it at a level.
     inverts: bool,
 }
 
-/// What became of the replies.
+/// Verdicts of the replies.
 #[derive(Clone, Copy, Debug, Default)]
 struct Judged {
     taken: usize,
@@ -34,7 +34,7 @@ struct Judged {
     wrong: usize,
 }
 
-/// Puts a pulse on a line that changes at these times; it is HIGH before the first.
+/// Adds a pulse to a line that changes at these times; it is HIGH before the first.
 fn hold(changes: &mut Vec<Time>, from: Time, to: Time, level: bool) {
     let at = |changes: &[Time], time: Time| changes.iter().filter(|t| **t <= time).count() % 2 == 0;
     let (before, after) = (at(changes, from), at(changes, to));
@@ -48,7 +48,7 @@ fn hold(changes: &mut Vec<Time>, from: Time, to: Time, level: bool) {
     changes.sort_unstable();
 }
 
-/// Receivers after power-up; made once.
+/// Receivers after power-up; elaborated once.
 fn engine() -> Lanes {
     static MADE: OnceLock<Lanes> = OnceLock::new();
     let make = || {
@@ -151,7 +151,7 @@ fn wrong_ones_are_within_the_bound(all_pulses: &[[u64; 2]], frames: usize) {
     for system_mhz in [20, 60] {
         for inverts in [true, false] {
             for &pulses in all_pulses {
-                // Up to half a bit: none of them passes unseen. Up to a bit: some are as long as a bit can be.
+                // Up to half a bit: all of them are detected. Up to a bit: some are as long as a bit may be.
                 for (width, share) in [([50_000, 200_000], 2_000), ([50_000, 400_000], 256)] {
                     let glitches = Glitches {
                         system_mhz,

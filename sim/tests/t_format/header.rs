@@ -1,4 +1,4 @@
-//! The header is found at every phase of the bit, with rate error and jitter, and nothing else is taken for one.
+//! The header is detected at every phase of the bit, with rate error and jitter, and nothing else is taken for a header.
 
 use super::lanes::{kind_reply, levels, Conditions, Many, Sent, BIT, LANES};
 use endat_hdl::protocols::t_format::cause;
@@ -99,7 +99,7 @@ fn none_is_made_up(system_mhz: u64, frames: usize) {
             let bytes = kind_reply(rng);
             let mut levels = levels(&bytes);
             match rng.in_range(0, 3) {
-                // Another sync code; the start bit is what makes it a field.
+                // Another sync code; the start bit makes it a field.
                 0 => {
                     let code = [0b000, 0b001, 0b011, 0b100, 0b101, 0b110, 0b111];
                     let code = code[rng.in_range(0, 6) as usize];

@@ -1,4 +1,4 @@
-//! Many frames at once: each lane has its own encoder's edges, all lanes the same request.
+//! Many frames in parallel: each lane has its own encoder edges, all lanes the same request.
 
 use endat_hdl::protocols::t_format::{channel::TFormatChannel, protocol::control};
 use endat_sim::rng::Rng;
@@ -19,14 +19,14 @@ pub struct Conditions {
     pub jitter: Time,
 }
 
-/// A reply as it is put on the line: bytes, and when it begins after the request.
+/// A reply on the line: bytes, and start time after the request.
 pub struct Sent {
     pub levels: Option<Vec<bool>>,
     pub bytes: Vec<u8>,
     pub after: Time,
 }
 
-/// What a lane says after an exchange.
+/// Outputs of a lane after an exchange.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Said {
     pub fresh: bool,
@@ -135,7 +135,7 @@ impl Many {
             }
         }
         toggles.sort_unstable();
-        // Long enough for any time-out and for the line to be idle again.
+        // Longer than any time-out, and until the line is idle again.
         self.run(last + 25 * self.conditions.system_mhz, &toggles);
         (0..LANES).map(|lane| self.said(lane)).collect()
     }
@@ -159,7 +159,7 @@ impl Many {
 /// A reply to the request for the kind of encoder.
 pub fn kind_reply(rng: &mut Rng) -> Vec<u8> {
     let [status, kind, ..] = rng.next_u64().to_le_bytes();
-    // No complaints.
+    // No error bits.
     let status = status & 0x3F;
     vec![control(2), status, kind, control(2) ^ status ^ kind]
 }

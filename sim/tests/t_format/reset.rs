@@ -1,15 +1,15 @@
-//! A reset in the middle of an exchange: the next request waits until the encoder has certainly said all, and no wrong position is shown.
+//! A reset in the middle of an exchange: the next request waits until the encoder has certainly finished, and no wrong position is shown.
 
 use super::rig::Rig;
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{EncoderConfig, Violation};
 use endat_sim::US;
 
-/// Longest pause before a reply that the receiver is set to.
+/// Configured longest pause before a reply.
 const REPLY_GAP_US: u64 = 20;
 /// The line is at rest after power-up.
 const READY_US: u64 = 75;
-/// What the encoder has to say.
+/// Position of the encoder.
 const SINGLE_TURN: u32 = 0x65_4321;
 const MULTI_TURN: u32 = 0xFE_DCBA;
 /// Request 3, with its pause and its reply.
@@ -38,7 +38,7 @@ fn requests_wait_after_a_reset(moments: u64) {
         rig.steps(3);
         rig.pins.reset = false;
         rig.set_gap(REPLY_GAP_US);
-        // Asks again and again, as a controller that waits for its position.
+        // Requests repeatedly, like a controller that waits for its position.
         for _ in 0..16 {
             rig.wait_us(rng.in_range(0, 10));
             rig.write(0, 3);
@@ -49,7 +49,7 @@ fn requests_wait_after_a_reset(moments: u64) {
                 wrong.push((cycle, gap_us, shown));
             }
         }
-        // A request that the reset has cut is no fault of the next one.
+        // A request cut by the reset is not a fault of the next one.
         let seen = rig.encoder.violations().iter().any(Violation::is_collision);
         if seen {
             collisions.push((cycle, gap_us));

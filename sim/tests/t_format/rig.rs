@@ -1,4 +1,4 @@
-//! The receiver behind its bus, a signal processor and an encoder on its line.
+//! The receiver with its bus, a signal processor and an encoder on its line.
 
 use crate::three_way::Stimulus;
 use endat_hdl::protocols::t_format::dsp::{AsyncDsp, TFormatStart};
@@ -10,7 +10,7 @@ use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
 use std::sync::OnceLock;
 
-/// After power-up no request goes out for the longest pause before a reply.
+/// After power-up no request is sent for the longest pause before a reply.
 const READY_US: u64 = 70;
 
 /// The inputs, as [`Inputs::row`] lists them.
@@ -73,7 +73,7 @@ fn compiled() -> Compiled {
         .clone()
 }
 
-/// What the seven addresses and the one behind them say.
+/// Content of the seven addresses and the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Map {
     pub request_id: u16,
@@ -103,7 +103,7 @@ pub struct Rig {
     outputs: [PortId; 4],
     pub pins: Inputs,
     pub encoder: Encoder,
-    /// Nobody is on the line.
+    /// No encoder is on the line.
     pub unplugged: bool,
     pub time: Time,
     period: Time,
@@ -141,12 +141,12 @@ impl Rig {
             period: 1_000_000 / system_mhz,
             recorded: None,
         };
-        // After power-up no request goes out before the line has been at rest.
+        // After power-up no request is sent before the line has been at rest.
         rig.wait_us(READY_US);
         rig
     }
 
-    /// Keeps what the pins do from here on.
+    /// Records the pins from here on.
     pub fn record(&mut self) {
         self.recorded = Some(Stimulus {
             inputs: INPUTS.map(String::from).to_vec(),
@@ -167,7 +167,7 @@ impl Rig {
         self.encoder.receiver(self.time, drive);
         self.time += self.period;
         self.encoder.advance(self.time);
-        // The transceiver does not hear itself.
+        // The transceiver does not receive its own output.
         self.pins.rx = self.unplugged || self.encoder.output() != Drive::Low;
         let row = self.pins.row();
         for (port, value) in self.inputs.iter().zip(row) {

@@ -7,12 +7,12 @@ use endat_sim::rng::Rng;
 use endat_sim::t_format::{Defect, EncoderConfig};
 use rtl_design::kernel_engine;
 
-/// The inputs of a receiver with these requests, defects and a processor that reads all the time.
+/// The inputs of a receiver with these requests, defects and a processor that reads continuously.
 fn recorded(ids: &[u8]) -> Stimulus {
     let mut rng = Rng::new(7);
     let mut rig = Rig::new(20, EncoderConfig::default());
     rig.record();
-    // From power-up on: the line has to be at rest.
+    // From power-up on: the line must be at rest.
     rig.wait_us(70);
     for &id in ids {
         rig.encoder.config.single_turn = rng.next_u64() as u32 >> 8;
@@ -28,13 +28,13 @@ fn recorded(ids: &[u8]) -> Stimulus {
         };
         rig.memory(id, rng.next_u64() as u8, rng.next_u64() as u8);
         rig.pins.trigger = !rig.pins.trigger;
-        // A request that is refused is told in these, and nothing is written before.
+        // The map shows a refused request, without a write before it.
         rig.steps(20);
     }
     rig.pins.reset = true;
     rig.steps(3);
     rig.pins.reset = false;
-    // Refused, then taken: the line has to be at rest.
+    // Refused, then accepted: the line must be at rest.
     rig.exchange(2);
     rig.wait_us(70);
     rig.exchange(2);
@@ -47,7 +47,7 @@ fn agrees(name: &str, ids: &[u8], requests_min: usize) {
         in rst_i, clk_select_i, trigger_i, bus_cs_n_i, bus_rd_n_i, bus_wr_n_i, bus_address_i, bus_data_i, encoder_data_i;
         out bus_data_o, bus_data_oe, encoder_data_o, encoder_data_oe, led_o);
     let recording = three_way(name, &mut kernel, design(), &recorded(ids)).unwrap();
-    // Something has happened.
+    // The recording is not trivial.
     let driver = recording.output("encoder_data_oe");
     let requests = driver.windows(2).filter(|w| w[0] < w[1]).count();
     assert!(requests >= requests_min, "{requests}");

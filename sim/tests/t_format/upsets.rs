@@ -1,4 +1,4 @@
-//! Every state that a T-format port can be brought into, reached or not: the next triggers work, nothing hangs.
+//! Any state of a T-format port, reachable or not: the next triggers work, nothing hangs.
 
 use endat_hdl::protocols::t_format::{channel::TFormatChannel, port::TFormatPort};
 use endat_sim::encoder::Drive;
@@ -10,16 +10,16 @@ use rust_hdl::prelude::Block;
 
 /// Registers up to this width get every value, wider ones have each of their bits inverted.
 const ALL_VALUES_BITS: usize = 6;
-/// Moments of the exchange at which each of them is upset in the slow tests.
+/// Times of the exchange at which each of them is upset in the slow tests.
 const MOMENTS: u64 = 16;
-/// Triggers that may be lost or bad after one that was upset.
+/// Triggers that may be lost or bad after an upset.
 const TRIGGERS: usize = 2;
 const SYSTEM_MHZ: u64 = 20;
-/// An exchange of request 3, its pauses, and the rest behind it, in microseconds.
+/// An exchange of request 3, its pauses, and the rest after it, in microseconds.
 const EXCHANGE_US: u64 = 60;
-/// The longest wait after an upset: a timer of 7 bits that counts round, or a field, and the line at rest.
+/// The longest wait after an upset: a wrapping 7-bit timer, or a field, and the line at rest.
 const LIMIT_US: u64 = 250;
-/// Behind an exchange, for an encoder that still answers and a line that has to be at rest, in microseconds.
+/// Time after an exchange, for an encoder that still answers and a line that must be at rest, in microseconds.
 const QUIET_US: u64 = 90;
 const SINGLE_TURN: u32 = 0xA5_3C96;
 const MULTI_TURN: u32 = 0x5A_C369;
@@ -131,7 +131,7 @@ impl<'a> Run<'a> {
         self.engine.set(trigger, 0);
     }
 
-    /// Waits for the end of what is under way; false if there is none.
+    /// Waits for the end of the present activity; false if there is no end.
     fn ends(&mut self) -> bool {
         let last = self.cycle + LIMIT_US * SYSTEM_MHZ;
         while self.cycle < last {
@@ -143,7 +143,7 @@ impl<'a> Run<'a> {
         false
     }
 
-    /// One trigger, and whether it brought all that it should.
+    /// One trigger; true if its result is good.
     fn is_good(&mut self) -> bool {
         self.trigger();
         let ends = self.ends();
@@ -155,7 +155,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Upsets every register at all moments, or each value of it at one, another one for each; gives how many there were and what did not
+/// Upsets every register at all times, or each value of it at one time that varies; returns the number of upsets and the failures to
 /// recover.
 fn upset(port: &Port, all_moments: bool) -> (usize, Vec<String>) {
     let names: Vec<String> = port.engine.nets().map(String::from).collect();

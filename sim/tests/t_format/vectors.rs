@@ -1,4 +1,4 @@
-//! Published frames: what a real encoder sent is what the receiver says.
+//! Published frames: the receiver outputs the content sent by a real encoder.
 
 use super::rig::Rig;
 use endat_hdl::protocols::t_format::cause;
@@ -48,13 +48,13 @@ fn logged_frames_of_a_real_encoder_arrive() {
             let fields = [map.status, map.encoder_id, map.alarm, map.crc];
             assert_eq!(fields, [bytes[1], bytes[5], bytes[9], *sum]);
             assert!(map.fresh && map.repeats && !map.alarmed && !map.busy);
-            // The log is of an encoder whose battery is empty.
+            // The logged encoder has an empty battery.
             assert_eq!(map.cause, cause::MULTI_TURN_ALARM);
         }
     }
 }
 
-/// The same encoder, asked for its single-turn position only.
+/// The same encoder, with requests for its single-turn position only.
 #[test]
 fn logged_single_turn_replies_of_a_real_encoder_arrive() {
     let logged = vectors();
@@ -151,7 +151,7 @@ fn every_request_brings_its_fields_and_leaves_the_others() {
             assert_eq!(map.status, if memory { 0 } else { 3 });
         }
         assert_eq!(rig.encoder.violations(), []);
-        // Ten in a row reset: nine change nothing.
+        // Ten in a row reset: nine have no effect.
         (0..8).for_each(|_| assert!(rig.exchange(8).fresh));
         assert_eq!(rig.exchange(8).single_turn, 0x12_3456);
         assert_eq!(rig.exchange(8).single_turn, 0);

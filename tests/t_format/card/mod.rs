@@ -3,12 +3,11 @@
 mod faults;
 mod memory;
 mod neighbours;
-mod program;
 mod services;
 mod three_ways;
 
 use crate::bus::Master;
-use endat_gen::config::{parse, Project};
+use endat_config::{parse, Project};
 use endat_hdl::regs::{Block, CARD, CHANNEL_CONFIG, DIRECT, INTERRUPT, RESULT, T_FORMAT};
 use endat_sim::bench::{PinNames, TFormatLink};
 use endat_sim::t_format::EncoderConfig;

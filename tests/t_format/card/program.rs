@@ -1,8 +1,7 @@
 //! The program's commands at a virtual card that mixes protocols, and its stream.
 
-use endat_gen::cli;
-use endat_gen::config::{parse, preset, Project};
-use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
+use endat_card::{VirtualCard, VirtualConfig};
+use endat_config::{parse, preset, Project};
 use endat_hdl::regs::Protocol;
 use endat_host::feed::Feed;
 use endat_host::{Bridge, Card};
@@ -11,8 +10,8 @@ use std::time::Duration;
 
 const PORT: [&str; 2] = ["--port", "virtual:mixed_protocols"];
 
-fn run(command: &[&str]) -> cli::Outcome {
-    cli::run([&["endat-gen"], command, &PORT].concat())
+fn run(command: &[&str]) -> endat_terminal::outcome::Outcome {
+    crate::program::run(&[command, &PORT].concat())
 }
 
 #[test]
@@ -41,7 +40,7 @@ fn the_host_commands_know_what_a_t_format_channel_is() {
 
     let param = run(&["param", "read", "0xA1", "0x0D", "--channel", "1"]);
     assert_eq!(param.exit_code, 2);
-    assert!(param.messages[0].contains("channel 1: mode commands: the channel speaks T-format, which has none; its requests go through the words of t_format1 (`endat-gen explain t_format`)"), "{param:?}");
+    assert!(param.messages[0].contains("channel 1: mode commands: the channel speaks T-format, which has none; its requests go through the words of t_format1 (`endat explain t_format`)"), "{param:?}");
     for (name, text) in [
         (
             "t_format0",
@@ -61,7 +60,7 @@ fn the_host_commands_know_what_a_t_format_channel_is() {
     );
     let words = run(&["reg", "read", "t_format1"]);
     assert_eq!(words.exit_code, 0, "{words:?}");
-    let told = cli::run(["endat-gen", "explain", "no_header"]);
+    let told = crate::program::run(&["explain", "no_header"]);
     assert!(
         told.stdout.starts_with("cause 4 of T-format (no_header)"),
         "{told:?}"

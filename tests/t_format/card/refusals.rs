@@ -1,6 +1,6 @@
 //! What a configuration of a mixed card may not say, with the line and the remedy.
 
-use endat_gen::config::{load_preset, parse, preset};
+use endat_config::{load_preset, parse, preset};
 
 fn complaints(text: &str) -> String {
     match parse("mixed.toml", text) {
@@ -23,7 +23,7 @@ fn mistakes_are_told_with_line_and_remedy() {
         ("position_bits = 29", "bit_hz = 2_500_000\nposition_bits = 29", "channel[0].bit_hz = 2_500_000: is a key of T-format, and this channel speaks EnDat; remove it, or add protocol = \"t_format\""),
         ("bit_hz = 2_500_000", "bit_hz = 4_000_000", "channel[1].bit_hz = 4000000: is no rate of T-format encoders; use 2500000 or 5000000"),
         ("request = 3 ", "request = 4 ", "channel[1].request = 4: is no request ID; use one of 0, 1, 2, 3, 7, 8, 12"),
-        ("request = 3 ", "request = 13 ", "channel[1].request = 13: goes to the EEPROM, which a trigger must not; use 3, and the word t_format<n>.send"),
+        ("request = 3 ", "request = 13 ", "channel[1].request = 13: accesses the EEPROM, which a trigger must not; use 3, and the word t_format<n>.send"),
         ("reply_gap_us = 20", "reply_gap_us = 64", ":27: channel[1].reply_gap_us = 64: outside 1..63; choose a value in that range"),
         ("field_gap_us = 2", "field_gap_us = 8", "channel[1].field_gap_us = 8: outside 0..7; choose a value in that range"),
         ("filter_ns = 50", "filter_ns = 160", "channel[1].filter_ns = 160: is 16 cycles, more than 15 (half a bit, and 15 at most); use 150 ns or less"),

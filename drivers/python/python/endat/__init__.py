@@ -43,17 +43,17 @@ def connect(
     """Opens a card.
 
     ``port``: a serial port (``/dev/ttyUSB1``, ``COM5``), ``tcp:HOST:PORT``, or ``virtual``, ``virtual:PRESET``, ``virtual:FILE.toml``
-    for one that is simulated in this process. ``wait``: until its encoders are initialised and the first results are there.
-    ``ranges``: what positions of a channel are, where neither encoder nor configuration says it, or both are wrong: ``{0: "17+16"}`` for 17
-    bits of angle and 16 that count turns, ``{1: "linear"}`` for a scale.
+    for a card simulated in this process. ``wait``: until its encoders are initialised and the first results are available.
+    ``ranges``: kind of position of a channel, if encoder and configuration do not define it or are wrong: ``{0: "17+16"}`` for 17
+    bits of angle and 16 turn bits, ``{1: "linear"}`` for a scale.
     """
     return Card(port, baud, wait, ranges)
 
 
 def explain(cause: str | int) -> str:
-    """What a cause means, and what helps: by its name, or its code in a column."""
+    """Explanation of a cause, with the remedy: by its name, or its code in a column."""
     name = cause if isinstance(cause, str) else CAUSES.get(int(cause), "")
     text = explain_cause(name)
     if text is None:
-        raise BadInput(f"cause = {cause!r}: there is none of that name; endat.CAUSES has them all")
+        raise BadInput(f"cause = {cause!r}: unknown cause; endat.CAUSES lists all")
     return text

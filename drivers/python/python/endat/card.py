@@ -1,4 +1,4 @@
-"""A card: who it is, its positions, registers, and the memory of its encoders."""
+"""A card: its identity, positions, registers, and the memory of its encoders."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .samples import Samples, _samples
 
 @dataclass(frozen=True)
 class Identity:
-    """What a card says about itself."""
+    """Identity of a card."""
 
     #: Version of its register map.
     register_map: str
@@ -26,7 +26,7 @@ class Identity:
     max_position_bits: int
     #: System clock, the unit of every number of cycles.
     system_hz: int
-    #: Which configuration it was made from.
+    #: Hash of the configuration from which it was generated.
     configuration_hash: int
     #: Its optional parts.
     parts: tuple[str, ...]
@@ -34,11 +34,11 @@ class Identity:
 
 @dataclass(frozen=True)
 class NamePlate:
-    """What an encoder says about itself, as the card read it; None where it has not."""
+    """Name plate of an encoder, as the card read it; None for words that it has not read."""
 
-    #: The card has initialised the encoder with success.
+    #: The card has initialised the encoder successfully.
     initialised: bool
-    #: The encoder knows EnDat 2.2.
+    #: The encoder supports EnDat 2.2.
     endat22: bool
     position_bits: int | None
     rotary: bool | None
@@ -59,19 +59,19 @@ class NamePlate:
 
 @dataclass(frozen=True)
 class Reading:
-    """What became of a channel's last trigger."""
+    """Result of a channel's last trigger."""
 
     #: Position in ``unit``, within the turn of a rotary encoder.
     position: float | None
     #: ``deg``, ``mm`` or ``counts``.
     unit: str
-    #: Whole turns, None of a linear encoder.
+    #: Whole turns, None for a linear encoder.
     turns: int | None
     #: Position as the encoder sent it.
     raw: int | None
-    #: The last trigger brought it; False: it is held from an earlier one, or there is none.
+    #: The last trigger brought the position; False: it is from an earlier one, or there is none.
     fresh: bool
-    #: Why not, or what else was wrong; ``none`` if nothing was.
+    #: Cause of a missing position, or another remark; ``none`` if everything was good.
     cause: str
     #: Number of results, modulo 65536.
     sequence: int
@@ -86,12 +86,12 @@ class Reading:
 
 @dataclass(frozen=True)
 class Answer:
-    """What came back for a mode command."""
+    """Answer to a mode command."""
 
     #: Echo of MRS code or address.
     address: int
     data: int
-    #: All bits: a position or test values, of the commands that bring such.
+    #: All bits: a position or test values, for commands with such an answer.
     bits: int
 
 
@@ -101,16 +101,16 @@ def _in_range(name: str, value: int, most: int, least: int = 0) -> int:
     return value
 
 
-#: Rows that a block of :meth:`Card.stream` has at most, unless told otherwise.
+#: Default of the largest number of rows in a block of :meth:`Card.stream`.
 BLOCK = 1000
-#: A block comes at least so often, if there is anything in it.
+#: Longest time between two blocks, if there are rows.
 LATENCY_S = 0.5
 
 
 class Card:
-    """A card at the other end of a link, or simulated in this process; made by :func:`endat.connect`.
+    """A card at a link, or simulated in this process; made by :func:`endat.connect`.
 
-    Calls may come from any thread; a card does one after the other. ``with`` closes it at the end.
+    Calls may come from any thread; the card executes them in order. ``with`` closes it at the end.
     """
 
     def __init__(self, port: str, baud: int, wait: bool, ranges: Mapping[int, str] | None) -> None:
@@ -142,26 +142,26 @@ class Card:
         return f"<endat.Card {self.port}: {', '.join(self.identity.protocols)}>"
 
     def close(self) -> None:
-        """Ends a recording that is under way, and the link."""
+        """Ends a recording under way, and closes the link."""
         self._native.close()
 
     def encoders(self) -> list[NamePlate | None]:
-        """The name plate of each channel's encoder; None where the card does not read it (part ``initialise``)."""
+        """The name plate of each channel's encoder; None if the card does not read it (part ``initialise``)."""
         return [None if one is None else NamePlate(**one) for one in self._native.name_plates()]
 
     def read(self) -> list[Reading]:
-        """The latest result of every channel, all of one moment."""
+        """The latest result of every channel, all from one instant."""
         return [Reading(**one) for one in self._native.read()]
 
     def stream(self, block: int = BLOCK, *, poll: bool = False) -> Generator[Samples]:
-        """Positions as they come, in blocks of up to ``block`` rows, until the iterator is closed.
+        """Positions as they arrive, in blocks of up to ``block`` rows, until the iterator is closed.
 
-        A card with a stream gives a row for every trigger. ``poll``, and cards without one: results are read one after the other.
-        A link that was lost is opened again; what was missed meanwhile is in ``missing``. Raises :class:`endat.Silent` when nothing
-        has come for 20 s, and :class:`endat.Refused` when the card is another one afterwards, or has begun anew.
+        A card with a stream gives a row for every trigger. With ``poll``, and for cards without a stream, the results are polled.
+        A lost link is reopened; ``missing`` counts the triggers lost meanwhile. Raises :class:`endat.Silent` when nothing
+        has arrived for 20 s, and :class:`endat.Refused` when the card is another one afterwards, or has restarted.
         """
         if block < 1:
-            raise BadInput(f"block = {block}: a block has one row at least")
+            raise BadInput(f"block = {block}: a block has at least one row")
         native, hz = self._native, self.identity.system_hz
         native.begin(poll)
         try:
@@ -185,15 +185,15 @@ class Card:
             return Samples.concatenate(blocks)
 
     def _limited(self, count: int | None, seconds: float | None, poll: bool) -> Generator[Samples]:
-        """The blocks of a stream until ``count`` rows, or ``seconds`` of the card's time, are over; without either, for ever."""
+        """The blocks of a stream up to ``count`` rows, or ``seconds`` of the card's time; without either, forever."""
         if count is not None and count < 1:
-            raise BadInput(f"count = {count}: give 1 at least")
+            raise BadInput(f"count = {count}: give at least 1")
         if seconds is not None and not seconds > 0:
             raise BadInput(f"seconds = {seconds}: give more than 0")
         left = count
         with closing(self.stream(BLOCK if left is None else min(BLOCK, left), poll=poll)) as blocks:
             for one in blocks:
-                # The last block may be longer than what is left.
+                # The last block may be longer than needed.
                 n = len(one) if left is None else min(len(one), left)
                 if seconds is not None:
                     n = min(n, int((one.time_s <= seconds).sum()))
@@ -203,11 +203,11 @@ class Card:
                     break
 
     def losses(self) -> tuple[int, int]:
-        """While a recording is under way: frames damaged on the link, and sets that the card itself has dropped."""
+        """While a recording is under way: frames damaged on the link, and sets dropped by the card."""
         return self._native.losses()
 
     def trigger(self) -> None:
-        """Triggers all channels now; the register must be enabled as a source of triggers."""
+        """Triggers all channels now; the trigger source ``register`` must be enabled."""
         self.write_register("card.trigger_now", 1)
 
     def calibrate(self) -> None:
@@ -215,11 +215,11 @@ class Card:
         self.write_register("card.calibrate", 1)
 
     def read_register(self, name: str) -> int:
-        """A word or field by name, as in ``result0.status.cause``; `endat-gen reg list` shows all."""
+        """A word or field by name, as in ``result0.status.cause``; `endat reg list` shows all."""
         return self._native.read_register(name)
 
     def write_register(self, name: str, value: int, *, force: bool = False) -> None:
-        """Writes a word, or a field and leaves the others. What the register map forbids is refused, unless ``force``."""
+        """Writes a word, or a field and keeps the others. Values that the register map forbids are rejected, unless ``force``."""
         self._native.write_register(name, _in_range("value", value, 0xFFFF_FFFF), force)
 
     def read_parameter(self, channel: int, area: int, address: int) -> int:

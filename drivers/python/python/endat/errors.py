@@ -1,17 +1,17 @@
-"""What can go wrong between a program and a card."""
+"""Errors between a program and a card."""
 
 
 class EndatError(Exception):
-    """Something could not be had from a card: the link is gone, or what answers is no card."""
+    """Access to a card failed: the link is lost, or the answer does not come from a card."""
 
 
 class BadInput(EndatError, ValueError):
-    """A name or number that was given is wrong; the text says what is right."""
+    """A given name or number is wrong; the text has the valid values."""
 
 
 class Refused(EndatError):
-    """The encoder, the line to it or the card refused."""
+    """The encoder, the line to it or the card rejected the request."""
 
 
 class Silent(EndatError, TimeoutError):
-    """Nothing answers, or no sample comes."""
+    """No answer, or no sample."""

@@ -1,4 +1,4 @@
-"""Recordings as HDF5 files, with units and who was measured."""
+"""Recordings as HDF5 files, with units and the identity of card and encoders."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .card import Card
 from .errors import BadInput, EndatError
 from .samples import CAUSES, Samples, _each
 
-#: A recording ends while so much is left on the disk: HDF5 does not stand a full one, and the file would be lost.
+#: A recording ends while this much space is left on the disk: HDF5 does not survive a full disk, and the file would be lost.
 RESERVE_BYTES = 16_000_000
-#: Rows that are compressed together: larger chunks are smaller in sum, but wait longer in memory (3 s at 10 kHz).
+#: Rows that are compressed together: larger chunks compress better, but wait longer in memory (3 s at 10 kHz).
 CHUNK = 32_768
-#: Rows of a slower card are written after so long, though their chunk is not full.
+#: Rows of a slower card are written after this time, even if their chunk is not full.
 LATEST_S = 5.0
-#: What arrays of a channel are called in a file, and their unit; None: that of the position.
+#: Names of a channel's arrays in a file, and their unit; None: that of the position.
 _OF_CHANNEL: dict[str, str | None] = {"position": None, "turns": "turns", "raw": "", "fresh": "", "cause": ""}
 
 
@@ -29,15 +29,15 @@ class _File:
     def __init__(self, file: Any, card: Card, compression: str | None, raw: bool) -> None:
         self.file, self.card, self.compression = file, card, compression
         self.of_channel = {name: unit for name, unit in _OF_CHANNEL.items() if raw or name != "raw"}
-        #: Rows in the file, those that wait for a whole chunk, and when rows were last written.
+        #: Rows in the file, rows that wait for a whole chunk, and the time of the last write.
         self.rows = 0
         self.waiting: list[Samples] = []
         self.written = time.monotonic()
-        #: What has been made, by its name: to look it up in the file for each block takes as long as to write it.
+        #: Created data sets, by name: looking them up in the file for each block takes as long as writing.
         self.made: dict[str, Any] = {}
 
     def begin(self, first: Samples) -> None:
-        """Names, units and what is known of card and encoders."""
+        """Names, units and the identity of card and encoders."""
         identity = self.card.identity
         about = self.file.attrs
         about["format"] = "endat recording 1"
@@ -55,7 +55,7 @@ class _File:
             group = self.file.create_group(f"channel{n}")
             group.attrs["protocol"] = identity.protocols[n]
             for key in ("steps_per_turn", "turns", "linear"):
-                # Neither is of positions that nobody explains.
+                # Positions with an unknown range have neither.
                 if scales[n]["unknown"] is None and scales[n][key] is not None:
                     group.attrs[key] = scales[n][key]
             plate = plates[n]
@@ -89,13 +89,13 @@ class _File:
             )
         there = self.rows + sum(map(len, self.waiting))
         if there // CHUNK > self.rows // CHUNK:
-            # A chunk that is written in parts is compressed anew for each part, and moved within the file.
+            # A chunk written in parts is compressed again for each part, and moved within the file.
             self.write(there // CHUNK * CHUNK)
         elif time.monotonic() - self.written > LATEST_S:
             self.write()
 
     def write(self, until: int | None = None) -> None:
-        """Writes what waits, up to a row. If Ctrl-C ends it halfway, the next call writes the same once more."""
+        """Writes the waiting rows, up to a row. If Ctrl-C interrupts it, the next call writes them again."""
         if not self.waiting:
             return
         block = Samples.concatenate(self.waiting)
@@ -114,7 +114,7 @@ class _File:
         for n, one in enumerate(block.channels):
             for name in self.of_channel:
                 put(f"channel{n}/{name}", getattr(one, name))
-        # What is there is there, whatever happens then.
+        # Written rows survive whatever happens next.
         self.file.flush()
         rest = [] if count == len(block) else [_each([block], lambda arrays: arrays[0][count:])]
         self.rows, self.waiting, self.written = end, rest, time.monotonic()
@@ -139,21 +139,21 @@ def record(
 ) -> int:
     """Records into an HDF5 file (needs ``h5py``) until ``count`` rows, or ``seconds`` of the card's time, are in it; returns the rows.
 
-    A disk that becomes full ends it with an :class:`EndatError` while there is still room for a whole file. Without either it goes on until
-    Ctrl-C, which ends it with a whole file. Rows are written in chunks of some seconds, which a program that is killed loses; memory does not
+    A nearly full disk ends it with an :class:`EndatError`, with a complete file. Without either limit it continues until
+    Ctrl-C, which also leaves a complete file. Rows are written in chunks of some seconds, which a killed program loses; memory use does not
     grow. An hour of two channels at 10 kHz has 255 MB, and takes 8 % of a core in real time.
-    ``compression``: ``gzip`` is read by everything, ``lzf`` is larger and needs less time, ``None``. ``raw=False`` leaves the positions as
-    the encoder sent them out, which are two fifths of a file: position in units and turns tell them.
+    ``compression``: ``gzip`` (read by all tools), ``lzf`` (larger, faster) or ``None``. ``raw=False`` omits the raw positions
+    of the encoder, two fifths of a file: position in units and turns contain them.
     """
     import h5py
 
     if not replace and os.path.exists(path):
         raise BadInput(f"path = {os.fspath(path)}: is there already; give another one, or replace=True")
     with closing(card._limited(count, seconds, poll)) as blocks:
-        # Only a card that gives something makes a file.
+        # Only a card with rows creates a file.
         block: Samples | None = next(blocks)
         assert block is not None
-        # HDF5 keeps chunks for readers, from version 2.0 on 8 MB of each data set; here nobody reads them again.
+        # HDF5 keeps chunks for readers, from version 2.0 on 8 MB of each data set; here they are not read again.
         with h5py.File(path, "w", rdcc_nbytes=CHUNK * 8) as file:
             to = _File(file, card, compression, raw)
             to.begin(block)

@@ -15,17 +15,17 @@ from .errors import BadInput
 if TYPE_CHECKING:
     from .endat_native import _Columns, _Scale
 
-#: Name of each code in a column of causes; `endat.explain` says what it means.
+#: Name of each code in a column of causes; `endat.explain` explains it.
 CAUSES: Mapping[int, str] = dict(cause_names())
 _CODES = {name: code for code, name in CAUSES.items()}
 
 
-# Arrays are compared element by element, so records of them are not: one is itself only.
+# Comparison of arrays is elementwise, so a record of arrays equals only itself.
 @dataclass(frozen=True, eq=False)
 class AdditionalData:
     """Additional data 1 or 2 of the same frames."""
 
-    #: They came with a right CRC; the others are 0.
+    #: Received with a right CRC; the other entries are 0.
     good: NDArray[np.bool_]
     #: WRN, RM, Busy, I4..I0.
     status: NDArray[np.uint16]
@@ -38,25 +38,25 @@ class ChannelSamples:
 
     #: ``deg``, ``mm`` or ``counts``.
     unit: str
-    #: Position in the unit, within the turn of a rotary encoder; NaN where there is none.
+    #: Position in the unit, within the turn of a rotary encoder; NaN if there is none.
     position: NDArray[np.float64]
-    #: Whole turns, 0 of a linear encoder.
+    #: Whole turns, 0 for a linear encoder.
     turns: NDArray[np.uint64]
     #: Position as the encoder sent it, bit 0 = LSB.
     raw: NDArray[np.uint64]
-    #: There is a position, of this trigger or an earlier one.
+    #: A position is available, from this trigger or an earlier one.
     valid: NDArray[np.bool_]
-    #: This trigger brought the position. Use these only: the others are held from an earlier one.
+    #: This trigger brought the position. Use only these: the others are from earlier triggers.
     fresh: NDArray[np.bool_]
     #: Codes of :data:`CAUSES`; 0 = none.
     cause: NDArray[np.uint8]
-    #: Where the position is 0 again, in the unit; none of a linear encoder, and where nobody says.
+    #: Value at which the position wraps to 0, in the unit; None for a linear encoder, and if unknown.
     wraps_at: float | None
-    #: Turns that the encoder tells apart, 1 = it counts none; behind the last one it begins anew. None of a linear encoder, and where nobody says.
+    #: Number of turns that the encoder distinguishes, 1 = it counts none; then the count wraps. None for a linear encoder, and if unknown.
     turns_counted: int | None
-    #: Why positions cannot be counted on or compared, and the remedy; None if they can.
+    #: Reason why positions cannot be unwrapped or compared, with the remedy; None if they can.
     unknown: str | None
-    #: Additional data 1 and 2, empty on a card that does not record them.
+    #: Additional data 1 and 2; empty on a card that does not record them.
     additional: tuple[AdditionalData, ...]
 
     def __repr__(self) -> str:
@@ -70,10 +70,10 @@ class ChannelSamples:
         return names[self.cause].astype(np.str_)
 
     def unwrapped(self) -> NDArray[np.float64]:
-        """The position without jumps: whole turns counted in; NaN where this trigger brought none.
+        """The position without jumps, including whole turns; NaN if this trigger brought none.
 
-        From one fresh position to the next an encoder must move less than half of what it tells apart: of a turn, or of all turns that
-        it counts. Raises :class:`endat.BadInput` where nobody says how many that are.
+        From one fresh position to the next an encoder must move less than half its range: of a turn, or of all turns that
+        it counts. Raises :class:`endat.BadInput` if the range is unknown.
         """
         if self.unknown is not None:
             raise BadInput(f"unwrapped(): {self.unknown}")
@@ -133,16 +133,16 @@ class Samples:
 
     @staticmethod
     def concatenate(blocks: Iterable[Samples]) -> Samples:
-        """Blocks of one recording, one behind the other."""
+        """Concatenates blocks of one recording."""
         all_ = list(blocks)
         if not all_:
-            raise ValueError("blocks = []: there is nothing to concatenate; give one block at least")
+            raise ValueError("blocks = []: nothing to concatenate; give at least one block")
         made: Samples = _each(all_, np.concatenate)
         return made
 
 
 def _each(parts: Any, change: Callable[[list[NDArray[Any]]], NDArray[Any]]) -> Any:
-    """Puts every array of these parts, which are alike, through a change; what is no array is as in the first one."""
+    """Applies a change to every array of these parts, which have the same form; other values are those of the first part."""
     first = parts[0]
     if isinstance(first, np.ndarray):
         return change(parts)

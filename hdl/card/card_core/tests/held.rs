@@ -1,8 +1,8 @@
-//! When the held results follow the channels, and what they say while they do not.
+//! Times when the held results follow the channels, and their content in between.
 
 use super::*;
 
-/// Words of both results; the age has nothing to do with the moment.
+/// Words of both results, without the age.
 fn results(host: &mut Host) -> Vec<u32> {
     host.read(RESULT.base, 14)
 }
@@ -14,7 +14,7 @@ fn is_stale(words: &[u32], channel: usize) -> bool {
 
 #[test]
 fn results_follow_when_two_channels_are_half_a_frame_apart() {
-    // Triggers come faster than frames; nobody answers, so every frame is long.
+    // Triggers come faster than frames; no encoder answers, so every frame is long.
     let mut host = Host::new(false, 2);
     // Channel 1 gets out of step: its frames fail at once until channel 0 is in the middle of one.
     host.set_data(1, true);
@@ -32,7 +32,7 @@ fn results_follow_when_two_channels_are_half_a_frame_apart() {
         let words = results(&mut host);
         for (channel, last) in last.iter_mut().enumerate() {
             let sequence = status(words[8 * channel]).0;
-            assert!(sequence > *last, "channel {channel} stands at {sequence}");
+            assert!(sequence > *last, "channel {channel} is stuck at {sequence}");
             *last = sequence;
         }
     }
@@ -43,13 +43,13 @@ fn results_follow_when_two_channels_are_half_a_frame_apart() {
         .all(|(now, then)| now - then > 3));
     assert!(
         owing > 30_000,
-        "some channel was nearly always busy: {owing}"
+        "one channel was nearly always busy: {owing}"
     );
 }
 
 #[test]
 fn results_follow_when_the_host_polls_in_step_with_the_timer() {
-    // Channel 0 fails at once, channel 1 waits long: between their results the moment is not whole.
+    // Channel 0 fails at once, channel 1 waits long: between their results the snapshot is incomplete.
     let mut host = Host::new(false, 4);
     host.set_data(0, true);
     let now = address(CARD, "trigger_now", 0);
@@ -61,7 +61,7 @@ fn results_follow_when_the_host_polls_in_step_with_the_timer() {
     }
     let frame = host.cycle - triggered;
     host.idle(1_000);
-    // Each read begins before channel 1's result and ends behind the next trigger.
+    // Each read begins before channel 1's result and ends after the next trigger.
     let period = (frame + 2_500) as u32;
     host.write(address(CARD_CONFIG, "trigger_period", 0), &[period]);
     host.write(address(CARD_CONFIG, "trigger_sources", 0), &[2]);
@@ -79,7 +79,7 @@ fn results_follow_when_the_host_polls_in_step_with_the_timer() {
         assert!(ended < frame, "the read ends within a frame");
         seen.push(status(words[0]).0);
         if n > 1 {
-            assert!(is_stale(&words, 1), "channel 1 owes");
+            assert!(is_stale(&words, 1), "channel 1 owes a result");
         }
     }
     assert!(

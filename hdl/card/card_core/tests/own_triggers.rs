@@ -1,10 +1,10 @@
-//! Channels that have triggers of their own.
+//! Channels with separate triggers.
 
 use super::*;
 use crate::config::{OwnTrigger, TriggerSources};
 use crate::regs::CHANNEL_CONFIG;
 
-/// A card of these channels, whose frames all fail at once, with all sources but the pin.
+/// A card with these channels, whose frames all fail at once, with all sources except the pin.
 fn host(own: &[Option<OwnTrigger>]) -> Host {
     let mut config = test_config();
     config.channels = config
@@ -77,7 +77,7 @@ fn each_channel_takes_the_triggers_that_are_its_own() {
     let sequence = [0, 1, 2, 3].map(|i| host.sequence(i));
     assert_eq!(sequence[2], before + 1);
     assert_eq!(sequence[3], 0);
-    // The disabled channel's line is as bad as the others': nothing is said about it.
+    // The line of the disabled channel is bad, too, but the card does not report it.
     assert_eq!(host.net("core.faulty_3"), 1);
     assert!(sequence[0] > sequence[1] && sequence[1] > sequence[2]);
 }
@@ -88,7 +88,7 @@ fn channels_with_equal_settings_trigger_together_whenever_they_were_written() {
     let mut host = host(&[own, own]);
     let frame = |i| address(CHANNEL_CONFIG, "frame", i);
     let word = |host: &mut Host, i| host.read(frame(i), 1)[0] & !0xf800;
-    // One of four, written while the other still takes all, and in the middle of its frame.
+    // One of four, written while the other still accepts all, and in the middle of its frame.
     let words = [word(&mut host, 0), word(&mut host, 1)];
     host.write(frame(0), &[words[0] | 3 << 11]);
     host.idle(1_900);
@@ -101,7 +101,7 @@ fn channels_with_equal_settings_trigger_together_whenever_they_were_written() {
     assert_eq!(taken[0], taken[1], "in the same cycles");
     let phase = all.iter().position(|at| *at == taken[0][0]).unwrap();
     assert_eq!(taken[0], every(&all[phase..], 4));
-    // Reading, and writing other words, does not begin the count anew.
+    // Reading, and writing other words, does not restart the count.
     let hold = address(CARD_CONFIG, "hold", 0);
     let between = (0..8).map(|_| {
         host.write(hold, &[1]);
@@ -127,7 +127,10 @@ fn a_disabled_channel_is_not_waited_for_and_says_nothing() {
     let first = status(host.read(RESULT.base, 1)[0]).0;
     host.idle(1_400);
     let words = host.read(RESULT.base, 9);
-    assert!(status(words[0]).0 > first, "its frame is not waited for");
+    assert!(
+        status(words[0]).0 > first,
+        "the read did not wait for its frame"
+    );
     let frames = host.falls[1].len();
     host.idle(10_000);
     let after = host.falls[1].len();
@@ -135,7 +138,7 @@ fn a_disabled_channel_is_not_waited_for_and_says_nothing() {
     assert!(taken[1].is_empty() && !taken[0].is_empty());
     assert!(
         after >= frames && host.falls[1].len() == after,
-        "no frame any more"
+        "no frame follows"
     );
     assert_ne!(host.net("core.port_1_cause"), 0, "its last frame was bad");
     assert_eq!(host.net("core.faulty_1"), host.net("core.faulty_2"));

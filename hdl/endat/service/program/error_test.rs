@@ -1,6 +1,6 @@
-//! Forced errors on a schedule: each in turn in a frame of its own, whose cause is awaited. So it shows that who tells errors still lives.
+//! Forced errors on a schedule: each in turn in a separate frame, whose cause is checked. This proves that error reporting works.
 //!
-//! Positions of triggers are not touched; a trigger that meets such a frame is lost, as with any request that has a frame of its own.
+//! Positions of triggers are not affected; a trigger during such a frame is lost, as with any separate request frame.
 
 use super::requests::{code, mailbox};
 use super::{high, low, minus, own, set, set_bits, ServiceTimes};
@@ -11,7 +11,7 @@ use crate::endat::service::map::{
 use crate::endat::transaction::cause;
 use crate::protocol::ModeCommand;
 
-/// What is forced, and the cause that must be told.
+/// Forced errors, with the cause that must be reported.
 const ERRORS: [(u16, u64); 4] = [
     (force::CRC, cause::CRC),
     (force::F1, cause::F1),
@@ -19,12 +19,12 @@ const ERRORS: [(u16, u64); 4] = [
     (force::SECOND_RECEIVER, cause::UPSET),
 ];
 
-/// How many of them a card forces in turn.
+/// Number of different errors that a card forces in turn.
 pub const fn forced_errors(second_receiver: bool) -> usize {
     ERRORS.len() - !second_receiver as usize
 }
 
-/// What a start sets.
+/// Start values.
 pub(super) fn start(a: &mut Assembler) {
     for word in [own::TESTING, own::BEHIND, own::TEST_NEXT] {
         set(a, word, 0);
@@ -32,14 +32,14 @@ pub(super) fn start(a: &mut Assembler) {
     a.inp(input::TIME_MS).st(own::TEST_FROM);
 }
 
-/// From the main loop, while nobody uses the request.
+/// Called from the main loop while no request is in use.
 pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
     let (due, send, done) = (a.label(), a.label(), a.label());
     a.place("error_test").link().st(own::FROM_TEST);
     a.ld(low(word::ERROR_TEST)).jz(done);
     a.ld(low(word::STATE)).andi(state::UNPLUGGED).jnz(done);
     if times.continuous {
-        // It would end the run.
+        // A forced error would end the continuous clock.
         a.ld(low(word::CONTINUOUS)).andi(1).jnz(done);
     }
     a.inp(input::TIME_MS).sub(own::TEST_FROM);
@@ -57,7 +57,7 @@ pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
     set(a, own::GO, go::OWN);
     a.ldi(mailbox::OWN).st(own::MAILBOX);
 
-    // The command of the triggers.
+    // Use the mode command of the triggers.
     let old = a.label();
     a.ldi(code(ModeCommand::SendPosition)).st(own::MODE);
     a.inp(input::CONFIGURED).andi(1 << 6).jz(old);
@@ -71,13 +71,13 @@ pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
         a.ld(own::TEST_NEXT).xori(n as u16).jnz(other);
         set(a, own::TEST_NEXT, (n + 1) as u16 % count as u16);
         if error.0 == force::F2 {
-            // Answers of EnDat 2.1 have none.
+            // Answers of EnDat 2.1 have no F2.
             a.inp(input::CONFIGURED).andi(1 << 6).jz(first);
         }
         force_error(a, error);
         a.jmp(send).place(other);
     }
-    // The first one comes last: whatever the word says, something is done.
+    // The first error comes last: it is the default for any other value.
     set(a, own::TEST_NEXT, 1);
     a.place(first);
     force_error(a, ERRORS[0]);
@@ -87,7 +87,7 @@ pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(mailbox::IDLE).st(own::MAILBOX);
     let told = a.label();
     a.ld(own::RESULT).sub(own::TEST_CAUSE).jz(told);
-    // The line has an error of its own, and that is told: a test of nothing.
+    // The frame had a real error, which is reported: the test is void.
     a.ld(own::RESULT).jnz(done);
     a.ld(high(word::ERROR_TEST_STATE)).addi(1);
     a.st(high(word::ERROR_TEST_STATE));
@@ -100,7 +100,7 @@ pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::FROM_TEST).jmpa();
 }
 
-/// Forces this error in the next frame of a request's own.
+/// Forces this error in the next separate request frame.
 fn force_error(a: &mut Assembler, (forced, cause): (u16, u64)) {
     a.ldi(forced | force::OWN_FRAMES).out(output::FORCE);
     set(a, own::TEST_CAUSE, cause as u16);

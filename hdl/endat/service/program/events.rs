@@ -1,4 +1,4 @@
-//! The end of a frame: counters, threshold, additional data, what they say about the request, the next selection.
+//! The end of a frame: counters, threshold, additional data and their echo of a request, next selection.
 
 use super::requests::{self, mailbox, ANSWERED};
 use super::{high, keep_bits, low, minus, own, set, set_bits, ServiceTimes};
@@ -31,7 +31,7 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     threshold(a);
     a.place(uncounted);
 
-    // What the additional data say goes into the slots of their codes.
+    // Store additional data in the slots of their codes.
     a.ldi(0).st(own::MATCHED);
     take(
         a,
@@ -52,7 +52,7 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::MAILBOX).xori(mailbox::RIDING).jnz("event_done");
     let (is_out, mine) = (a.label(), a.label());
     a.ld(own::STATUS).andi(status::IS_REQUEST).jnz(mine);
-    // A frame that was under way, or measured the delay, has none. After more of them the channel has forgotten the request.
+    // A frame that was under way, or measured the delay, carries no request. After more of them the channel has lost the request.
     a.ld(own::PATIENCE).addi(minus(1)).st(own::PATIENCE);
     a.jnz("event_done");
     set(a, own::PATIENCE, requests::PATIENCE);
@@ -62,7 +62,7 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(go::RIDE).out(output::GO);
     a.jmp("event_done");
     a.place(mine);
-    // A spoilt CRC does not hinder the supplement; what else goes wrong may.
+    // A forced CRC fault does not affect the supplement; other faults may.
     for sent in ANSWERED.into_iter().chain([cause::CRC]) {
         a.ld(own::NUMBER).xori(sent as u16).jz(is_out);
     }
@@ -73,7 +73,7 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::STATUS).andi(status::INFO_1_ACTIVE).jz(fulfilled);
     a.jmp("event_done");
 
-    // Additional data 1 tells when the encoder is done, and what with.
+    // Additional data 1 shows when the encoder has finished, and with which echo.
     a.place(sent);
     let in_time = a.label();
     a.inp(input::TIME_MS).sub(own::BEGAN_MS);
@@ -95,7 +95,7 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     count(a);
 }
 
-/// Takes what a block of additional data says, or counts its wrong CRC.
+/// Stores the content of a block of additional data, or counts its wrong CRC.
 fn take(a: &mut Assembler, [came, good]: [u16; 2], [content, byte]: [u8; 2], kept: u8) {
     let (right, done) = (a.label(), a.label());
     a.ld(own::STATUS).andi(good).jnz(right);
@@ -117,7 +117,7 @@ fn answer_echo(a: &mut Assembler, fulfilled: crate::endat::sequencer::assembler:
     a.ld(own::MODE);
     a.xori(ModeCommand::PositionSelectMemory.code().into())
         .jnz(fulfilled);
-    // The selection of additional data is not repeated.
+    // The encoder does not echo the selection of additional data.
     a.ld(own::ADDRESS).andi(0xE0).xori(0x40).jz(fulfilled);
     a.jmp(compare);
     a.place(parameter);
@@ -147,11 +147,11 @@ fn count(a: &mut Assembler) {
     a.st_x(high(word::COUNTERS)).ret();
 }
 
-/// n of the last m frames.
+/// Threshold: n of the last m frames.
 fn threshold(a: &mut Assembler) {
     let (stays, good, done) = (a.label(), a.label(), a.label());
     a.ld(own::WINDOW).jz(done);
-    // The frame that leaves was a bad one if the history is that large.
+    // The oldest frame was bad if the history is at least 2^(m-1).
     a.ld(own::HISTORY).sub(own::LEAVING).jc(stays);
     a.st(own::HISTORY);
     a.ld(own::BAD).addi(minus(1)).st(own::BAD);
@@ -173,13 +173,13 @@ fn turn(a: &mut Assembler) {
     let (go_on, select) = (a.label(), a.label());
     a.place("turn");
     a.ld(low(word::LIST_LENGTH)).jz("event_done");
-    // Only where triggers send 111000.
+    // Only if triggers send 111000.
     a.inp(input::CONFIGURED).andi(1 << 6).jz("event_done");
-    // A list of one is selected once.
+    // A list with one code is selected once.
     a.ld(low(word::LIST_LENGTH)).xori(1).jnz(select);
     a.ld(own::MATCHED).jnz("event_done");
     a.place(select);
-    // The frame that has ended need not be the one with the last selection: it may have measured the delay, and that one is under way.
+    // The frame that ended may have measured the delay, so the last selection may still be under way.
     a.call("let_go").jnz("event_done");
     a.ld(own::TURN).addi(1).st(own::TURN);
     a.sub(low(word::LIST_LENGTH)).jc(go_on);
@@ -198,7 +198,7 @@ fn turn(a: &mut Assembler) {
     a.out(output::CONTROL).ret();
 }
 
-/// Puts CONTENT of the block whose status byte is in A into the slots of its code.
+/// Stores CONTENT of the block whose status byte is in A in the slots of its code.
 pub(super) fn store(a: &mut Assembler) {
     let (next, other, done) = (a.label(), a.label(), a.label());
     a.place("store").andi(0x1F).st(own::CODE);

@@ -1,16 +1,16 @@
-//! Words that decide about frames as long as nobody writes them again: each has its complement beside it.
+//! Guard of the words that control frames and are rarely rewritten: each is stored together with its complement.
 //!
 //! ```text
 //! host writes a word --> WRITTEN --> the program guards its words anew
-//! main loop: word + complement = -1?  no, and not WRITTEN --> everything begins anew, `starts` counts
+//! main loop: word + complement = -1?  no, and not WRITTEN --> restart of the program, `starts` counts
 //! ```
 //!
-//! Which of the words are the host's is in [`own`].
+//! [`own`] marks the words of the host.
 
 use super::{own, ServiceTimes};
 use crate::endat::sequencer::assembler::Assembler;
 
-/// The words of the host that are guarded, of what there is.
+/// The guarded words of the host, in this build.
 pub(super) fn settings(times: &ServiceTimes) -> impl Iterator<Item = (u8, u8)> {
     let all = [
         (true, own::SET_FORCE),
@@ -23,12 +23,12 @@ pub(super) fn settings(times: &ServiceTimes) -> impl Iterator<Item = (u8, u8)> {
     there.map(|(_, setting)| setting)
 }
 
-/// All words that are guarded by their complement.
+/// All guarded words with their complements.
 pub(super) fn guarded(times: &ServiceTimes) -> impl Iterator<Item = (u8, u8)> {
     own::KEPT.into_iter().chain(settings(times))
 }
 
-/// Guards a word as it is.
+/// Stores the complement of a word.
 pub(super) fn guard(a: &mut Assembler, (word, inverse): (u8, u8)) {
     a.ld(word).xori(u16::MAX).st(inverse);
 }

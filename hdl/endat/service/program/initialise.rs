@@ -1,4 +1,4 @@
-//! Initialisation: a table of steps, each a request with a frame of its own at the calibration clock.
+//! Initialisation: a table of steps, each a request with a separate frame at the calibration clock.
 
 use super::requests::{code, NEVER_BEGAN};
 use super::{guard, high, keep, keep_bits, low, minus, own, set, set_bits, ServiceTimes};
@@ -11,9 +11,9 @@ use crate::endat::service::map::{
 use crate::endat::timing;
 use crate::protocol::{ModeCommand, MAX_POSITION_BITS};
 
-/// How often a step is tried.
+/// Number of tries of a step.
 const TRIES: u16 = 3;
-/// How often all of them are: an encoder whose plug was loose for a moment has forgotten what was selected.
+/// Number of tries of the whole table: an encoder with a loose plug loses its selection.
 const ROUNDS: u16 = 2;
 
 /// A step of the initialisation.
@@ -25,25 +25,25 @@ pub enum Step {
     Select(u8),
     /// Reads a word (100011) into the name plate.
     Read {
-        /// Its address.
+        /// Address.
         address: u8,
-        /// Host word that gets it.
+        /// Host word to store it in.
         to: u8,
     },
     /// Writes a word (011100), and the wait after it.
     Write {
-        /// Its address.
+        /// Address.
         address: u8,
-        /// What is written.
+        /// Data.
         data: u16,
     },
-    /// Takes over the width; fails if it is none.
+    /// Uses the position width of the encoder; fails if it is invalid.
     TakeWidth,
-    /// Goes on only if the encoder knows EnDat 2.2; an other one gets 2 MHz and 000111.
+    /// Continues only if the encoder supports EnDat 2.2; otherwise sets 2 MHz and 000111.
     OnlyEndat22,
     /// Chooses the clock.
     ChooseClock,
-    /// Sets the recovery time, if it is another one.
+    /// Sets the recovery time if it differs.
     SetRecovery,
 }
 
@@ -74,7 +74,7 @@ pub fn steps() -> Vec<Step> {
     steps
 }
 
-/// What a step does, for people.
+/// Description of a step.
 pub fn step_name(step: Step) -> String {
     match step {
         Step::Reset => "reset".into(),
@@ -91,7 +91,7 @@ pub fn step_name(step: Step) -> String {
     }
 }
 
-/// Subroutines `power_up`, for an encoder that has just got its supply, and `initialise`.
+/// Subroutines `power_up`, for an encoder after power-up, and `initialise`.
 pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.place("power_up").link().st(own::FROM_INITIALISE);
     set_bits(a, low(word::STATE), state::INITIALISING);
@@ -100,7 +100,7 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(times.power_up_ms).call("wait");
     a.ld(own::LEVELS).addi(level::CLOCK_LOW);
     a.out(output::CONTROL);
-    // A microsecond or two: more than the 125 ns that are asked for.
+    // One or two microseconds; the specification asks for 125 ns.
     a.inp(input::TIME_US).st(own::WAIT_FROM);
     let pulse = a.here();
     a.inp(input::TIME_US).sub(own::WAIT_FROM).addi(minus(2));
@@ -114,7 +114,7 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.out(output::CONTROL);
     a.place("begin");
     if times.diagnosis {
-        // The host's limit is one for positions; a selection may wait for the encoder's memory.
+        // The host's limit applies to positions; a selection may wait for the encoder's memory.
         a.ldi(0).out(output::WATCHDOG);
     }
     set(a, own::ROUNDS, ROUNDS);
@@ -132,7 +132,7 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
         .andi(state::ALARM | state::POSITION_2)
         .addi(state::INITIALISING);
     a.st(low(word::STATE));
-    // Nothing of another encoder may be left.
+    // Clear everything read from another encoder.
     a.ldi(0);
     for word in word::NAME_PLATE..=map::PLATE_DELAY {
         a.st(low(word)).st(high(word));
@@ -177,7 +177,7 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     keep(a, own::PERIOD);
     a.out(output::FOUND).out(output::PERIOD);
     a.ld(low(word::PROGRESS)).st(high(word::PROGRESS));
-    // The line was never LOW: the next time it is, there is an encoder.
+    // The line was never LOW: the next LOW means that an encoder was connected.
     a.ld(own::RESULT).xori(NEVER_BEGAN).jnz(answered);
     set_bits(a, low(word::STATE), state::UNPLUGGED);
     a.jmp("initialise_end");
@@ -227,12 +227,12 @@ fn exchange(a: &mut Assembler) {
     a.ld(own::STEP_RETURN).jmpa();
 }
 
-/// Begins the program anew where no initialisation is under way: an upset has led here.
+/// Restarts the program if no initialisation is under way: an upset has led here.
 fn no_jump_astray(a: &mut Assembler) {
     a.ld(low(word::STATE)).andi(state::INITIALISING).jz("start");
 }
 
-/// Steps that conclude something.
+/// Steps that evaluate words.
 fn findings(a: &mut Assembler, times: &ServiceTimes) {
     let counted = |a: &mut Assembler| {
         a.ld(low(word::PROGRESS)).addi(1).st(low(word::PROGRESS));
@@ -270,7 +270,7 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     set_bits(a, low(word::STATE), state::ENDAT22);
     a.ret();
 
-    // The period for DIVISOR kHz, rounded up, unless the configured one is longer.
+    // The period for DIVISOR kHz, rounded up, unless the configured period is longer.
     let (more, unknown) = (a.label(), a.label());
     a.place("step_clock");
     counted(a);
@@ -294,7 +294,7 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     set_bits(a, low(word::STATE), state::SLOWER);
     a.place(unknown).ret();
 
-    // Short only where it is wanted, and the clock is as fast as configured.
+    // Short only if selected, and if the clock runs as fast as configured.
     let (long, decided, range) = (a.label(), a.label(), a.label());
     a.place("step_recovery");
     counted(a);
@@ -313,7 +313,7 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     a.place(long).place(decided);
     a.ld(low(plate("recovery"))).andi(map::RECOVERY_MASK);
     a.sub(own::DATA).jz("initialised");
-    // The word has other functions beside.
+    // The word has other functions, too.
     a.ld(low(plate("recovery"))).andi(!map::RECOVERY_MASK);
     a.add(own::DATA).st(own::DATA);
     a.ldi(map::RECOVERY_ADDRESS.into());

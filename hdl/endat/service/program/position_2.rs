@@ -1,13 +1,13 @@
-//! Position 2, which comes in three parts, beside the position of the frame that brought the first of them.
+//! Position 2, which arrives in three parts; compared with the position of the frame that brought the first part.
 
 use super::{high, low, own, set, set_bits};
 use crate::endat::sequencer::assembler::Assembler;
 use crate::endat::service::map::{input, input::status, state, word, COUNTER_POSITION_2};
 
-/// I4..I0 of the first part; the others follow.
+/// I4..I0 of the first part; the other parts follow.
 const FIRST_PART: u16 = 2;
 
-/// Takes CONTENT of additional data CODE.
+/// Stores CONTENT of additional data CODE.
 pub(super) fn position_2(a: &mut Assembler) {
     let (second, third, none) = (a.label(), a.label(), a.label());
     a.place("position_2");
@@ -35,7 +35,7 @@ pub(super) fn position_2(a: &mut Assembler) {
     compare(a);
 }
 
-/// Position 2 - position - offset, modulo two to the width.
+/// Position 2 - position - offset, modulo 2 to the power of the width.
 fn difference(a: &mut Assembler) {
     let parts = |words: [u8; 2]| [low(words[0]), high(words[0]), low(words[1])];
     let (read, offset) = (parts(word::POSITION_2), parts(word::OFFSET));
@@ -76,7 +76,7 @@ fn difference(a: &mut Assembler) {
     }
 }
 
-/// Whether the difference, or what is left of the modulus, is within the tolerance.
+/// Compares the difference, or the modulus minus the difference, with the tolerance.
 fn compare(a: &mut Assembler) {
     let (compare, failed, within) = (a.label(), a.label(), a.label());
     a.ld(low(word::TOLERANCE)).jnz(compare);

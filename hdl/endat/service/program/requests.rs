@@ -1,4 +1,4 @@
-//! Requests of the host, and frames of their own.
+//! Requests of the host, and separate frames.
 
 use super::{high, keep, keep_bits, low, minus, own, set, ServiceTimes};
 use crate::endat::sequencer::assembler::Assembler;
@@ -9,25 +9,25 @@ use crate::endat::service::map::{
 use crate::endat::transaction::cause;
 use crate::protocol::ModeCommand;
 
-/// Who uses the request.
+/// Use of the request.
 pub(super) mod mailbox {
-    /// Nobody but the list.
+    /// Only the list uses it.
     pub const IDLE: u16 = 0;
-    /// The host's request rides on the next triggered frame.
+    /// The host's request waits for the next triggered frame.
     pub const RIDING: u16 = 1;
-    /// Its frame is over; additional data 1 will tell what became of it.
+    /// Its frame is over; additional data 1 will bring the result.
     pub const SENT: u16 = 2;
-    /// It has a frame of its own.
+    /// It has a separate frame.
     pub const OWN: u16 = 3;
 }
 
-/// Result of a request that never began: no cause of a frame.
+/// Result of a request that never began; not a cause of a frame.
 pub(super) const NEVER_BEGAN: u16 = cause::COUNT as u16;
 
-/// Frames without the request before it is asked for again.
+/// Frames without the request before it is sent again.
 pub(super) const PATIENCE: u16 = 4;
 
-/// Causes that do not spoil an answer: alarms, lost triggers, a hasty end.
+/// Causes with a valid answer: alarms, lost triggers, a short recovery time.
 pub(super) const ANSWERED: [u64; 5] = [
     cause::NONE,
     cause::F1,
@@ -36,7 +36,7 @@ pub(super) const ANSWERED: [u64; 5] = [
     cause::RECOVERY_TOO_SHORT,
 ];
 
-/// Commands with a frame of their own and an answer without parameter.
+/// Commands with a separate frame and an answer without parameter.
 const BARE: [ModeCommand; 2] = [ModeCommand::SendPosition, ModeCommand::SendTestValues];
 
 /// Code of a command, as a number of the program.
@@ -44,7 +44,7 @@ pub(super) fn code(command: ModeCommand) -> u16 {
     command.code().into()
 }
 
-/// From the main loop, and back to it.
+/// Called from the main loop, and returns to it.
 pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     let (is_own, ride) = (a.label(), a.label());
     a.place("mailbox");
@@ -58,7 +58,7 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.out(output::ADDRESS);
     a.ld(low(word::REQUEST)).st(own::DATA).out(output::DATA);
     a.ldi(request_state::BUSY).st(low(word::REQUEST_STATE));
-    // What has F2 rides: 111000, and what has the same triplet twice, but for 010 010.
+    // Commands with F2 wait for a trigger: 111000, and those with two equal triplets except 010 010.
     a.ld(own::MODE);
     a.xori(code(ModeCommand::SendPositionAddInfo)).jz(ride);
     a.ld(own::MODE).andi(7).st(own::COUNT);
@@ -75,7 +75,7 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
 
     a.place(is_own);
     a.ldi(mailbox::OWN).st(own::MAILBOX);
-    // No trigger may disturb the encoder's start: not even one that comes right behind the reset's frame.
+    // Triggers must not disturb the encoder's start, not even one directly after the frame of the reset.
     let lasts = a.label();
     a.ld(own::MODE);
     a.xori(code(ModeCommand::ReceiveReset)).jnz(lasts);
@@ -103,15 +103,15 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::ERROR).call("finish");
     a.jmp("main");
 
-    // A selection of the list that has not begun is taken back. One that has (A is not 0) is let go first, and its end is looked at: the
-    // channel sends it from where the next request is to stand.
+    // Cancel a selection of the list that has not begun. If it has begun (A is not 0), finish it first and handle its end: the
+    // channel sends it from the registers that the next request needs.
     a.place("let_go");
     a.ldi(go::CANCEL).out(output::GO);
     a.inp(input::STATUS)
         .andi(status::REQUEST_RUNS | status::EVENT)
         .ret();
 
-    // The wait that a command of its own demands.
+    // The wait after a separate command.
     let (reset, write) = (a.label(), a.label());
     a.place("pause");
     a.ld(own::MODE);
@@ -129,7 +129,7 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     keep(a, own::LEVELS);
     a.out(output::CONTROL).ret();
 
-    // Ends the request that waits, with error A; not if its frame has begun in this moment.
+    // Ends the waiting request with error A, unless its frame has just begun.
     let begun = a.label();
     a.place("give_up").st(own::ERROR);
     a.ldi(go::CANCEL).out(output::GO);
@@ -139,7 +139,7 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::ERROR).jmp("finish");
     a.place(begun).ret();
 
-    // The request has come to its end with error A.
+    // Ends the request with error A.
     a.place("finish");
     (0..request_state::ERROR_SHIFT).for_each(|_| {
         a.st(own::ERROR).add(own::ERROR);
@@ -154,7 +154,7 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(mailbox::IDLE).st(own::MAILBOX).ret();
 }
 
-/// Sends the request at the ports in a frame of its own; RESULT gets its cause and flags.
+/// Sends the request at the ports in a separate frame; RESULT gets its cause and flags.
 pub(super) fn own_frame(a: &mut Assembler, times: &ServiceTimes) {
     let (again, none, mine, done) = (a.label(), a.label(), a.label(), a.label());
     a.place("own_frame").link().st(own::FROM_OWN);
@@ -178,7 +178,7 @@ pub(super) fn own_frame(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::FROM_OWN).jmpa();
 }
 
-/// A = error code of the request whose RESULT and reply are there.
+/// A = error code of the request, from RESULT and reply.
 pub(super) fn judge(a: &mut Assembler) {
     let (answered, silent, crc, unknown) = (a.label(), a.label(), a.label(), a.label());
     let (ok, address, data) = (a.label(), a.label(), a.label());

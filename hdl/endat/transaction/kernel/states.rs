@@ -1,10 +1,10 @@
-//! What the transaction does in each of its phases.
+//! Actions of the transaction in each phase.
 
 use rtl_design::kernel_parts;
 
 #[kernel_parts(states)]
 impl Transaction {
-    /// DATA is not LOW yet, or not for long enough.
+    /// Waits until DATA has been LOW for long enough.
     fn await_low(&mut self) {
         self.limit.next = self.ready_low_cycles.val() - 1;
         self.timer_clear.next = self.level.val();
@@ -14,7 +14,7 @@ impl Transaction {
         }
         if self.level.val() {
             self.phase.d.next = Phase::NotReady;
-            // Longer than an edge rings.
+            // Longer than the ringing of an edge.
             self.plugged.d.next = self.high_at_tick.q.val() & self.tick_us.val();
             if self.triggered.val() | self.owed.val() {
                 self.found.next = self.not_low.val();
@@ -27,10 +27,10 @@ impl Transaction {
         }
     }
 
-    /// A frame may begin.
+    /// Waits for a trigger.
     fn await_trigger(&mut self) {
         self.timer_clear.next = true;
-        // A trigger just behind one that was refused is lost: the result that is being told would be taken for its own.
+        // Drop a trigger while the refusal of the previous one is being published; otherwise it would get that result.
         self.idle.next =
             !(self.next_frame.hold_off.val() & self.has_all.val()) & !self.verdict.is_telling.val();
         if self.level.val() {
@@ -53,7 +53,7 @@ impl Transaction {
                     self.refuse.next = true;
                 }
             }
-            // The line is wanted for long; the trigger has a result all the same: nothing wrong, no position.
+            // The line is reserved for long; the trigger still gets a result: no fault, no position.
             if self.once_more.q.val()
                 & self.next_frame.hold_off.val()
                 & self.has_all.val()
@@ -88,7 +88,7 @@ impl Transaction {
         self.in_us.next = true;
         self.timer_clear.next =
             (self.progress.hunting.val() ^ self.was_hunting.q.val()) | self.progress.finished.val();
-        // A receiver that has lost its place. The timer of the hunt is still compared in the cycle after it.
+        // The receiver has lost its place. The timer of the hunt is still compared in the cycle after it.
         if self.endless.val()
             & !self.progress.hunting.val()
             & !(self.was_hunting.q.val() & self.has_all.val())
@@ -96,11 +96,11 @@ impl Transaction {
             self.found.next = self.tail_low.val();
             self.give_up.next = true;
         }
-        // In the first cycle of the hunt the timer is still that of what was before.
+        // In the first cycle of the hunt the timer still has the value of the previous wait.
         if self.timer_hit.q.val() & self.progress.hunting.val() & self.was_hunting.q.val() {
             self.found.next = self.no_start.val();
             self.give_up.next = true;
-            // The result is told; the clock goes on as long again, to know a late encoder from a silent one.
+            // Report the result; the clock continues for the same time, to distinguish a late encoder from none.
             if self.has_diagnosis.val() & !self.shape.has_parameter.val() & !self.late.q.val() {
                 self.give_up.next = false;
                 self.announce.next = true;
@@ -180,10 +180,10 @@ impl Transaction {
             self.found.next = self.tail_low.val();
             self.give_up.next = true;
         }
-        // A cycle late, for the middle may come before the last bit has been worked upon.
+        // One cycle late, because the middle may come before the last bit has been processed.
         if self.was_center.q.val() {
             self.phase.d.next = Phase::Recovery;
-            // From here on the full clock's times again: a short tm ends before half a slow period does.
+            // The times of the full clock apply from here on: a short tm ends before half a slow period does.
             self.acquiring.d.next = false;
             self.is_slow.d.next = false;
         }
@@ -194,7 +194,7 @@ impl Transaction {
         self.running.next = !self.tail_sampled.q.val();
         self.watched.next = true;
         self.limit.next = bit_cast::<16, 13>(self.limits.recovery_limit_cycles.val());
-        // A request's command may have another range than the triggers' one.
+        // A request's command may have another range than the command of the triggers.
         if self.own.val() {
             self.limit.next = self.own_recovery_limit_cycles.val();
         }
@@ -213,19 +213,19 @@ impl Transaction {
                 self.give_up.next = true;
             }
         }
-        // Each cell had its pulse, but for one whose count was upset.
+        // Each cell had its pulse, unless a count was upset.
         if self.cells.sample.val() & !self.tail_sampled.q.val() & !self.progress.all_used.val() {
             self.found.next = self.upset.val();
             self.give_up.next = true;
         }
-        // The encoder still sends, or has stopped early: its frame has another length than ours.
+        // The encoder is still sending, or has stopped early: its frame has another length than configured.
         if self.cells.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
             self.found.next = self.tail_low.val();
             self.give_up.next = true;
         }
     }
 
-    /// The line is left alone; then it is probed, where that is known.
+    /// Keeps the line idle, then probes it if the diagnosis is present.
     fn stay_quiet(&mut self) {
         self.in_us.next = true;
         self.limit.next = self.abort_us.val();

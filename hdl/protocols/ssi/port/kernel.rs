@@ -24,7 +24,7 @@ impl Logic for SsiPort {
 
     /// Lengths of both halves of a period, and the end of the one under way.
     fn time_clock(&mut self) {
-        // A shorter one has no halves.
+        // A shorter period has no halves.
         self.period.next = self.period_cycles.val();
         if !self.period_cycles.val().get_bits::<9>(2).any() {
             self.period.next = self.period_cycles.val() | 4;
@@ -37,7 +37,7 @@ impl Logic for SsiPort {
         }
     }
 
-    /// The clock and the states.
+    /// Runs the clock and the states.
     fn clock_frame(&mut self) {
         self.bits.next = self.position_bits.val();
         if self.frame.val().get_bit(3) {
@@ -47,11 +47,11 @@ impl Logic for SsiPort {
             self.bits.next = self.special[i].all_bits.val();
         }
         self.ends_copy.next = !self.left.q.val().get_bits::<5>(1).any();
-        // This rising edge takes the last bit of the frame.
+        // This rising edge samples the last bit of the frame.
         self.is_last.next = !self.first.q.val()
             & self.ends_copy.val()
             & (self.second.q.val() | !self.frame.val().get_bit(1));
-        // No upset keeps the clock LOW.
+        // An upset must not keep the clock LOW.
         self.clk.d.next = self.state.q.val() != self.at_low.val();
         self.is_astray.next = self.has_guards.val()
             & (self.state.q.val().xor()
@@ -104,7 +104,7 @@ impl Logic for SsiPort {
                         self.not_low.q.val() | (self.filter.level.val() & !self.holds_end.val());
                 }
             } else {
-                // Whatever the line does: a trigger looks at it again.
+                // In any state of the line: the next trigger checks it again.
                 self.state.d.next = self.at_rest.val();
             }
         }
@@ -118,7 +118,7 @@ impl Logic for SsiPort {
         }
     }
 
-    /// Samples DATA at each rising edge of the clock but the first of a copy, most significant bit first.
+    /// Samples DATA at each rising edge of the clock except the first of a copy, most significant bit first.
     fn take_bits(&mut self) {
         self.takes_bit.next =
             (self.state.q.val() == self.at_low.val()) & self.is_due.val() & !self.first.q.val();
@@ -148,7 +148,7 @@ impl Logic for SsiPort {
             self.left.d.next = self.left.q.val() - 1;
             self.left_too.d.next = self.left_too.q.val() - 1;
             if self.is_position.val() {
-                // Of the bits as they are sent.
+                // Parity of the bits as sent.
                 self.ones.d.next = self.ones.q.val() ^ self.filter.level.val();
                 if self.is_parity.val() {
                     self.not_even.d.next = self.not_even.q.val()
@@ -182,7 +182,7 @@ impl Logic for SsiPort {
         }
     }
 
-    /// The bits that are not position, if there are any.
+    /// Special bits, for encoders with such bits.
     fn check_special_bits(&mut self) {
         self.is_position.next = true;
         self.special_found.next = 0.into();
@@ -206,9 +206,9 @@ impl Logic for SsiPort {
         }
     }
 
-    /// How the recovery time ends.
+    /// End of the recovery time.
     fn recover(&mut self) {
-        // The encoder is ready again, if DATA was LOW before.
+        // The encoder is ready again if DATA was LOW before.
         self.ready.next = (self.state.q.val() == self.at_recovery.val())
             & self.filter.level.val()
             & !self.not_low.q.val()
@@ -226,7 +226,7 @@ impl Logic for SsiPort {
         self.busy.next = self.state.q.val() != self.at_rest.val();
         self.publishes.next = (self.state.q.val() == self.at_judge.val())
             & !(self.unknown.q.val() & self.not_low.q.val());
-        // The result of the frame under way, or of the next one, reports a trigger that was not taken.
+        // The result of the frame under way, or of the next one, reports a lost trigger.
         if self.publishes.val() {
             self.lost.d.next = false;
             self.slow.d.next = false;
@@ -242,7 +242,7 @@ impl Logic for SsiPort {
         }
         self.is_other.next =
             self.frame.val().get_bit(1) & (self.word.q.val() != self.again.q.val());
-        // The bits are counted twice: a copy that is short by one fits the next one that begins a bit too soon.
+        // The bits are counted twice, because a copy that is short by one could match if the next one begins a bit early.
         self.is_torn.next = self.has_guards.val()
             & (self.torn.q.val()
                 | self.is_astray.val()
@@ -250,12 +250,12 @@ impl Logic for SsiPort {
                 | (self.first.q.val() != self.first_too.q.val()));
         self.torn.d.next = self.is_torn.val()
             & (self.is_astray.val() | (self.state.q.val() != self.at_rest.val()));
-        // All bits have come, in as many copies as were asked for.
+        // Checks that all bits of all copies have been received.
         self.is_short.next = (self.left.q.val().any()
             | (self.second.q.val() ^ self.frame.val().get_bit(1)))
             & !self.unknown.q.val()
             & !self.not_high.q.val();
-        // What is stored is what came.
+        // Checks that the stored bits are the received bits.
         self.is_upset.next = self.is_short.val()
             | (self.has_guards.val()
                 & (self.is_torn.val() | (self.word.q.val().xor() ^ self.sum.q.val())));
@@ -266,21 +266,21 @@ impl Logic for SsiPort {
             | (bit_cast::<6, 1>(self.is_other.val().into()) << 4)
             | (bit_cast::<6, 1>(self.is_upset.val().into()) << 5);
         self.good.next = !self.found.val().any() & !self.special_found.val().any();
-        // A lost trigger is for the next result, not for what has become of this one.
+        // The next result reports a lost trigger; it does not affect the outcome of this one.
         self.raised.next = bit_cast::<16, 6>(self.found.val())
             | (bit_cast::<16, 1>((self.lost.q.val() & !self.is_late.val()).into()) << 6)
             | (bit_cast::<16, 1>((self.slow.q.val() | self.is_late.val()).into()) << 7)
             | bit_cast::<16, 12>(self.special_found.val());
         self.primary.flags.next = self.raised.val();
         for i in 0..self._specials {
-            // With a lost trigger, or a late end of the frame before, the position would have been taken.
+            // A lost trigger, or a late end of the previous frame, alone would accept the position.
             if self.special[i].found.val().any() {
                 self.primary.flags.next = self.raised.val() & 0xFF3F;
             }
         }
     }
 
-    /// The last good position, and why there is no newer one.
+    /// Outputs the last good position, and the cause if there is no newer one.
     fn show_result(&mut self) {
         connect!(self.snapshot <= self; tick_us, timestamp);
         self.fallen.d.next =

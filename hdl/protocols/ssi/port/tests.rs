@@ -3,17 +3,17 @@ use super::super::protocol::from_gray;
 use super::*;
 use crate::testing::tick;
 
-/// An encoder that answers in the cycle of the clock's edge, and the port.
+/// An encoder that answers in the cycle of the clock edge, and the port.
 struct Rig {
     uut: SsiPort,
     cycle: u64,
     clk: bool,
-    /// Bits as they come, the LOW one behind each copy included.
+    /// Bits as received, including the LOW one after each copy.
     bits: Vec<bool>,
     sent: usize,
     falls: Vec<u64>,
     rises: Vec<u64>,
-    /// Cycles of LOW behind the last edge.
+    /// Cycles of LOW after the last edge.
     recovery: u64,
 }
 
@@ -74,13 +74,13 @@ impl Rig {
         }
     }
 
-    /// A frame in which these bits come, up to the end of the recovery time; gives its cause.
+    /// Sends a frame with these bits, up to the end of the recovery time; returns its cause.
     fn frame(&mut self, bits: Vec<bool>) -> u64 {
         self.bits = bits;
         self.sent = 0;
         (self.falls, self.rises) = (vec![], vec![]);
         self.trigger();
-        // The encoder may take longer than the port waits; on a line that stays LOW the port waits for ever.
+        // The encoder may take longer than the port waits; on a line that stays LOW the port waits forever.
         let mut left = 3_000;
         while left > 0 && (self.uut.busy.val() || !self.uut.data_i.val()) {
             self.steps(1);
@@ -127,7 +127,7 @@ fn positions_come(widths: &[u64]) {
             assert_eq!(rig.frame(sent), cause::NONE, "{frame} {width}");
             assert!(rig.is_fresh());
             assert_eq!(rig.position(), is, "{frame} {width}");
-            // Nothing more is clocked.
+            // No more clock edges follow.
             rig.steps(2_000);
             let clocks = (width + 1) * (1 + (frame >> 1 & 1));
             assert_eq!(rig.falls.len() as u64, clocks);
@@ -158,7 +158,7 @@ fn the_clock_has_the_period_and_a_longer_first_low() {
         assert_eq!(rig.rises[n] - rig.rises[n - 1], 21);
         assert_eq!(rig.rises[n] - rig.falls[n], 10);
     }
-    // The time stamp is that of the first falling edge, where the encoder takes the position.
+    // The time stamp is that of the first falling edge, where the encoder latches the position.
     let stamp = rig.uut.result.first_fall_timestamp.val().to_u64();
     assert_eq!(stamp, rig.falls[0]);
 }
@@ -179,7 +179,7 @@ fn what_is_wrong_has_its_cause_and_brings_no_position() {
             [bits(0x33, 8), vec![true], bits(0x33, 8)].concat(),
             cause::DATA_NOT_LOW_AFTER,
         ),
-        // Nothing is plugged in.
+        // No encoder is connected.
         (vec![true; 40], cause::DATA_NOT_LOW_AFTER),
     ] {
         assert_eq!(rig.frame(sent), is);
@@ -190,7 +190,7 @@ fn what_is_wrong_has_its_cause_and_brings_no_position() {
             cause::flag(is)
         );
     }
-    // Settings that nobody wrote.
+    // Invalid settings.
     rig.uut.frame.next = 0.into();
     assert_eq!(rig.frame(twice(0x11, 0x11, 8)), cause::UNKNOWN_FRAME);
     assert!(rig.falls.is_empty());
@@ -199,7 +199,7 @@ fn what_is_wrong_has_its_cause_and_brings_no_position() {
     assert_eq!(rig.position(), 0x11);
 }
 
-/// The parity is of the bits as they are sent, and of each copy.
+/// The parity covers the bits as sent, for each copy separately.
 #[test]
 fn a_parity_bit_that_does_not_fit_has_its_cause() {
     for (frame, odd) in [

@@ -6,7 +6,7 @@ fn list(specials: &[Special]) -> Specials {
     Specials::new(specials).unwrap()
 }
 
-/// The flags and the bits shown of a frame with these levels, in copies of so many bits.
+/// The flags and the shown bits of a frame with these levels, in copies.
 fn frame(block: &mut SpecialBits, position_bits: u64, copies: &[&[u8]]) -> [u64; 2] {
     let step = |block: &mut SpecialBits| tick(block, |u, level| u.clock.next = level.into());
     block.heard.next = true;
@@ -36,7 +36,7 @@ fn block(before: &[Special], after: &[Special]) -> SpecialBits {
     block
 }
 
-/// Catches a bit that is taken for its neighbour, before and after the position.
+/// Catches a bit that is swapped with its neighbour, before and after the position.
 #[test]
 fn each_special_bit_has_its_cause_and_its_place() {
     let before = [Ignored, Alarm, NotPowerFail];
@@ -81,11 +81,11 @@ fn parity_is_of_all_bits_before_it() {
     let mut odd = block(&[], &[ParityOdd]);
     assert_eq!(frame(&mut odd, 3, &[&bits("1010")]), [1 << 3, 0]);
     assert_eq!(frame(&mut odd, 3, &[&bits("1011")]), [0, 0]);
-    // With an odd number of ones in the first copy the second one begins anew, too.
+    // With an odd number of ones in the first copy the second one starts from zero, too.
     assert_eq!(frame(&mut odd, 3, &[&bits("1011"), &bits("1011")]), [0, 0]);
 }
 
-/// The CRC of 101 by long division, and a bit after it that is not of it.
+/// The CRC of 101 by long division, and a bit after it that it does not cover.
 #[test]
 fn crc_begins_anew_with_each_copy() {
     let bits = |text: &str| text.bytes().map(|b| b - b'0').collect::<Vec<_>>();

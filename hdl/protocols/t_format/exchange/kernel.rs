@@ -18,7 +18,7 @@ impl Logic for Exchange {
         self.report();
     }
 
-    /// Notes of an exchange are cleared when its result has been published.
+    /// Clears the notes of an exchange after its result has been published.
     fn forget_last(&mut self) {
         self.forget.next = self.reset.val() | (self.phase.q.val() == Phase::Rest);
         self.grid.reset.next = self.reset.val();
@@ -37,7 +37,7 @@ impl Logic for Exchange {
         self.memory_busy.reset.next = self.forget.val();
     }
 
-    /// Bits, and the order of the fields.
+    /// Connects bits and field order.
     fn wire(&mut self) {
         self.grid.bit_cycles.next = self.bit_cycles.val();
         self.grid.restart.next = false;
@@ -51,7 +51,7 @@ impl Logic for Exchange {
         connect!(self.bits <= self.order; is_control, is_address, is_crc);
     }
 
-    /// Edges, and how long ago the last one was.
+    /// Detects edges, and measures the time since the last one.
     fn watch_line(&mut self) {
         self.previous.d.next = self.level.val();
         self.rising.next = !self.previous.q.val() & self.level.val();
@@ -66,7 +66,7 @@ impl Logic for Exchange {
         }
     }
 
-    /// Counts below zero, to -3: a wait is longer than its setting whenever it began between two strobes.
+    /// Counts below zero, to -3: so a wait is longer than its setting, wherever it began between two strobes.
     fn run_timer(&mut self) {
         self.expired.next = self.timer.q.val().get_bit(6) & !self.timer.q.val().get_bit(1);
         if self.tick_us.val() & !self.expired.val() {
@@ -88,14 +88,14 @@ impl Logic for Exchange {
             & self.is_bit.val()
             & !self.index.q.val().get_bit(2)
             & !(self.index.q.val().get_bit(1) & self.index.q.val().get_bit(0));
-        // The edge into the second cell of the sync code times what follows, even if the old grid has a strobe right now.
+        // The edge into the second cell of the sync code times the following bits, even if the old grid has a strobe in this cycle.
         self.retimed.next = self.rising.val()
             & self.in_sync.val()
             & self.index.q.val().get_bit(0)
             & (self.phase.q.val() == Phase::Field);
         self.strobe.next = self.grid.strobe.val() & !self.retimed.val();
         self.sampled.next = self.strobe.val() & (self.phase.q.val() == Phase::Field);
-        // What is sent runs through the check sum as what is received does.
+        // The check sum processes sent bits like received bits.
         self.wire_bit.next = self.level.val();
         if self.phase.q.val() == Phase::Send {
             self.wire_bit.next = self.bits.bit_out.val();
@@ -110,7 +110,7 @@ impl Logic for Exchange {
             self.check.d.next = bit_cast::<8, 7>(self.check.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.summed.val().into()) << 7);
         }
-        // Start and data bits are nine: three does not divide what an upset takes from their number, or adds.
+        // Start and data bits are nine. An upset changes their number by an amount that three does not divide.
         if self.strobe.val() {
             self.index.d.next = self.index.q.val() + 1;
             self.bits_mod_3.d.next = self.bits_mod_3.q.val() + 1;
@@ -129,9 +129,9 @@ impl Logic for Exchange {
         }
     }
 
-    /// The order of an exchange.
+    /// Phases of an exchange.
     fn go_on(&mut self) {
-        // An edge of the control field that is not that of a header.
+        // An edge of the control field that is not a header.
         self.too_soon.next =
             self.order.is_control.val() & (self.is_start.val() | !self.index.q.val().any());
         self.publish.next = false;
@@ -147,7 +147,7 @@ impl Logic for Exchange {
         }
     }
 
-    /// Nothing is on the line.
+    /// The line is idle.
     fn rest(&mut self) {
         self.line.d.next = true;
         if self.expired.val() {
@@ -163,7 +163,7 @@ impl Logic for Exchange {
         self.index.d.next = 15.into();
         self.refused.d.next = false;
         if self.has_guards.val() & self.owed.q.val() {
-            // Its result would never come.
+            // The result of an unknown or blocked request would never come.
             self.phase.d.next = Phase::Judge;
         } else {
             if self.trigger.val() {
@@ -175,7 +175,7 @@ impl Logic for Exchange {
                     self.owed.d.next = true;
                     self.in_request.next = true;
                     self.timer.d.next = self.request_us.val();
-                    // Until the verdict says that all of the reply has come.
+                    // Until the verdict finds the reply complete.
                     self.unsettled.d.next = true;
                     self.grid.restart.next = true;
                     self.phase.d.next = Phase::Send;
@@ -184,7 +184,7 @@ impl Logic for Exchange {
         }
     }
 
-    /// The fields of a request.
+    /// Sends the fields of a request.
     fn send(&mut self) {
         if self.strobe.val() {
             self.line.d.next = self.bits.bit_out.val();
@@ -204,7 +204,7 @@ impl Logic for Exchange {
         }
     }
 
-    /// Its last bit is on the line.
+    /// The last bit of the request is on the line.
     fn release(&mut self) {
         if self.strobe.val() {
             self.in_request.next = false;
@@ -213,7 +213,7 @@ impl Logic for Exchange {
         }
     }
 
-    /// For a start bit.
+    /// Waits for a start bit.
     fn wait(&mut self) {
         self.index.d.next = 15.into();
         if self.expired.val() {
@@ -228,11 +228,11 @@ impl Logic for Exchange {
         }
     }
 
-    /// A field of the reply.
+    /// Receives a field of the reply.
     fn receive(&mut self) {
         if self.sampled.val() {
             if self.is_start.val() {
-                // Gone at its middle: no start bit.
+                // HIGH at its middle: no start bit.
                 if self.level.val() {
                     self.phase.d.next = Phase::Wait;
                 }
@@ -241,7 +241,7 @@ impl Logic for Exchange {
                     if self.in_sync.val() {
                         if self.differs.val() {
                             self.phase.d.next = Phase::Wait;
-                            // Shorter than a bit and a half is noise; what is longer spoils the header.
+                            // A pulse shorter than a bit and a half is noise; a longer one corrupts the header.
                             if self.index.q.val().any() {
                                 self.missed.d.next = true;
                                 self.phase.d.next = Phase::Judge;
@@ -303,7 +303,7 @@ impl Logic for Exchange {
         self.phase.d.next = Phase::Rest;
         self.overrun.d.next = false;
         if self.phase.q.val() == Phase::Judge {
-            // What follows a request waits for the line to be at rest; one that was refused changes nothing on it.
+            // After a request the line must be at rest before the next one; a rejected request does not change the line.
             if !self.refused.q.val() {
                 self.timer.d.next = self.rest_us.val();
             }
@@ -314,13 +314,13 @@ impl Logic for Exchange {
                 self.phase.d.next = Phase::Judge;
             }
         }
-        // Of a reply that came whole nothing is left on the line, whatever it says.
+        // After a complete reply the line is free, whatever the reply contains.
         if self.is_whole.val() {
             self.unsettled.d.next = false;
         }
     }
 
-    /// No request lasts that long, or is another one than was asked for.
+    /// Cuts a request that lasts too long, or differs from the requested one.
     fn guard_request(&mut self) {
         if self.has_guards.val()
             & self.in_request.val()
@@ -349,7 +349,7 @@ impl Logic for Exchange {
         self.is_headless.next =
             self.missed.q.val() & self.order.is_control.val() & self.heard.q.val();
         self.is_short.next = self.missed.q.val() & !self.order.is_control.val();
-        // A verdict in the middle of a reply and nothing to show for it, or the reply to a request that has changed since.
+        // A verdict in the middle of a reply without a fault, or the reply to a request that has changed since, is an upset.
         self.is_ended.next = self.refused.q.val()
             | self.missed.q.val()
             | self.bad_delimiter.q.val()
@@ -360,7 +360,7 @@ impl Logic for Exchange {
                 & !self.index.q.val().get_bit(2)
                 & (self.echo.q.val() == self.request_id.val()));
         self.is_astray.next = self.has_guards.val() & (self.upset.q.val() | !self.is_ended.val());
-        // An alarm reported with an upset would hide it.
+        // An alarm reported with an upset would hide the upset.
         self.alarms.next = self.status.val().get_bits::<2>(4);
         if self.is_astray.val() {
             self.alarms.next = 0.into();

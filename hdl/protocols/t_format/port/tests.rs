@@ -3,10 +3,10 @@ use super::super::protocol::Request;
 use super::*;
 use crate::testing::tick;
 
-/// Cycles of a microsecond here, but for long bits.
+/// Cycles of a microsecond in the tests, except for long bits.
 const US: u64 = 20;
 
-/// A port whose line nobody drives, in time.
+/// A port with an idle line, simulated cycle by cycle.
 struct Rig {
     uut: TFormatPort,
     cycle: u64,
@@ -79,7 +79,7 @@ impl Rig {
         self.uut.host_read.next = true;
         self.step();
         self.uut.host_read.next = false;
-        // The word stays, whatever becomes of the port.
+        // The word stays, even if the port changes.
         self.step();
         self.uut.host_word.val().to_u64()
     }
@@ -103,7 +103,7 @@ fn a_trigger_sends_its_request_and_silence_is_told_as_such() {
     rig.trigger();
     assert!(rig.uut.busy.val());
     rig.us(20);
-    // 0x1A: falls at the start bit, behind bit 1 and behind bit 4.
+    // 0x1A: falls at the start bit, after bit 1 and after bit 4.
     assert_eq!(rig.falls.len(), 3);
     assert_eq!(rig.falls[1] - rig.falls[0], 3 * 8);
     assert_eq!(rig.result(), (1, cause::NO_ANSWER));
@@ -114,7 +114,7 @@ fn a_trigger_sends_its_request_and_silence_is_told_as_such() {
         "raw flags"
     );
     assert!(!rig.uut.busy.val());
-    assert_eq!(rig.answer(), (0, false, false), "no request of the host's");
+    assert_eq!(rig.answer(), (0, false, false), "no request of the host");
 }
 
 #[test]
@@ -166,9 +166,9 @@ fn the_hosts_request_gives_no_result_and_waits_for_its_turn() {
         assert!(rig.falls.len() <= before + 3, "one exchange at a time");
     }
     rig.us(1);
-    assert_eq!(rig.answer(), (0, false, true), "a rest, or on its way");
+    assert_eq!(rig.answer(), (0, false, true), "a rest, or under way");
     rig.us(20);
-    // After silence the line has to be idle for a while.
+    // After a missing answer the line must be idle for a while.
     assert_eq!(rig.answer(), (cause::LINE_NOT_IDLE, true, false));
     rig.us(20);
     rig.send(2, 0, 0);
@@ -196,7 +196,7 @@ fn a_request_that_is_under_way_cannot_be_changed() {
         pairs.collect::<Vec<_>>()
     };
     assert_eq!(apart(&plain), apart(&disturbed));
-    // Half a request that began before the end of another is none.
+    // The two halves of a request must follow the end of the previous one.
     let mut rig = Rig::new();
     rig.send(2, 0, 0);
     rig.half(true, 6);
@@ -204,7 +204,7 @@ fn a_request_that_is_under_way_cannot_be_changed() {
     let sent = rig.falls.len();
     rig.half(false, 0x55A5);
     rig.us(60);
-    assert_eq!(rig.falls.len(), sent, "there was no other");
+    assert_eq!(rig.falls.len(), sent, "no other request was sent");
     assert!(rig.answer().1);
 }
 
@@ -244,7 +244,7 @@ fn bits_end(lengths: impl Iterator<Item = u64>) {
             rig.us(1);
             left_us -= 1;
         }
-        // One result, and no other one.
+        // Exactly one result.
         rig.us(left_us.min(20));
         assert_eq!(rig.result().0, 1, "{bit_cycles}");
         let cycles = if bit_cycles < 8 {

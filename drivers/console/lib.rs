@@ -1,0 +1,6 @@
+//! What programs and libraries have in common: messages with exit codes, numbers that options take, files that are written whole.
+
+pub mod artifact;
+pub mod did_you_mean;
+pub mod error;
+pub mod number;

@@ -1,0 +1,7 @@
+//! What the programs show on a terminal: outcomes, colours, progress, completions and manual pages, files besides the result.
+
+pub mod colour;
+pub mod documents;
+pub mod files;
+pub mod outcome;
+pub mod work;
