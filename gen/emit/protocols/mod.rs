@@ -87,7 +87,7 @@ pub struct VhdlParts {
     pub shortest_cycles: u64,
     /// A part of the channels that the bench does not check.
     pub unchecked: Option<&'static str>,
-    /// Text for each place of the bench that is in [`VHDL_PLACES`].
+    /// Text for each place of the bench that is in `VHDL_PLACES`.
     #[serde(flatten)]
     pub texts: BTreeMap<&'static str, String>,
 }
