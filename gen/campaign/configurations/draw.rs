@@ -334,7 +334,7 @@ mod tests {
     use std::ops::Range;
 
     /// Catches a draw that depends on more than its seed, one that the reader refuses, and a key that is never drawn.
-    fn check_draws(seeds: Range<u64>) {
+    fn check_draws(seeds: Range<u64>, rare: &[&str]) {
         let (mut keys, mut drawn) = (BTreeSet::new(), BTreeSet::new());
         for seed in seeds {
             let text = valid(seed).unwrap();
@@ -352,7 +352,9 @@ mod tests {
                     .filter_map(|l| Some(l.split_once(" =")?.0.to_owned())),
             );
         }
-        let never: Vec<_> = keys.iter().filter(|key| !drawn.contains(**key)).collect();
+        let never: Vec<_> = (keys.iter())
+            .filter(|key| !drawn.contains(**key) && !rare.contains(key))
+            .collect();
         assert!(
             never.is_empty() && keys.contains("filter_cycles"),
             "{never:?} of {keys:?}"
@@ -361,13 +363,14 @@ mod tests {
 
     #[test]
     fn draws_are_valid_the_same_again_and_have_every_key() {
-        check_draws(0..400);
+        // Few draws keep this one; the slow check has it.
+        check_draws(0..200, &["bits_after"]);
     }
 
     #[test]
     #[ignore = "slow: 1600 drawn configurations"]
     fn many_draws_are_valid_and_the_same_again() {
-        check_draws(0..1600);
+        check_draws(0..1600, &[]);
     }
 
     /// Catches a panic of the reader, and spoilt texts that are all alike to it. Returns how many were accepted and rejected.
