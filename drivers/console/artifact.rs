@@ -90,8 +90,15 @@ fn holds(path: &Path, text: &str) -> io::Result<bool> {
     }
 }
 
-/// What differs between `folder` and the artefacts; empty when nothing does. Never writes.
+/// Differences between `folder` and the artefacts; empty if there are none. Never writes.
 pub fn differences(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
+    let mut found = changed(folder, artifacts);
+    found.extend(stale(folder, artifacts));
+    found
+}
+
+/// Artefacts that the folder lacks or holds otherwise.
+pub fn changed(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
     let mut found = Vec::new();
     for artifact in artifacts {
         let path = folder.join(&artifact.path);
@@ -105,12 +112,16 @@ pub fn differences(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
             Err(e) => found.push(format!("{}: {e}; move it away first", path.display())),
         }
     }
+    found
+}
+
+/// Files of an earlier emission that are no artefacts.
+pub fn stale(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
     let left = leftovers(folder, artifacts);
-    let stale = left
-        .removable
-        .iter()
-        .map(|path| format!("{}: is no longer emitted; emit removes it", path.display()));
-    found.extend(stale);
+    let removable = left.removable.iter();
+    let mut found: Vec<String> = removable
+        .map(|path| format!("{}: is no longer emitted; emit removes it", path.display()))
+        .collect();
     found.extend(left.kept);
     found
 }

@@ -10,7 +10,7 @@ use endat_console::artifact::{self, Artifact};
 use endat_console::error::CommandError;
 use endat_emit::language::Language;
 use endat_emit::making::{file_name, Maker};
-use endat_emit::with::emit_with;
+use endat_emit::with::Whole;
 use endat_tools::bitstream::{self, Effort};
 use std::path::{Path, PathBuf};
 
@@ -75,32 +75,31 @@ pub fn flash(arguments: &FlashArgs) -> Result<Outcome, CommandError> {
             path.display()
         )));
     }
-    be_of(&path, &folder, &emit_card(&project, language)?, &make)?;
+    let whole = Whole::of_card(&project, language)?;
+    be_of(&path, &folder, &whole, &whole.with(&project.with)?, &make)?;
     bitstream::report_of(&project, &board, &folder, &name)?;
     Ok(Outcome::good(command + "\n"))
 }
 
-/// The files of a card, with the extras of its configuration.
-fn emit_card(project: &Project, language: Language) -> Result<Vec<Artifact>, CommandError> {
-    let card = Configuration::Card(Box::new(project.clone()));
-    emit_with(&card, language, &project.with)
-}
-
-/// An error if what is beside a file, which says what it was built of, is another emission.
+/// An error if the files next to a bitstream are those of another emission. Each extra may be there or not: it makes no other bitstream, and
+/// changes the page and the list of files only.
 fn be_of(
     path: &Path,
     folder: &Path,
+    whole: &Whole,
     artifacts: &[Artifact],
     remedy: &str,
 ) -> Result<(), CommandError> {
-    // Files that `emit --with` adds, and the two that list them, make no other bitstream.
-    let lists = [artifact::MANIFEST, artifact::README].map(|name| folder.join(name));
-    let is_other = |text: &String| {
-        let is_of_list = |file: &PathBuf| text.starts_with(&format!("{}:", file.display()));
-        !lists.iter().any(is_of_list) && !text.contains("is no longer emitted")
+    let lists = [artifact::MANIFEST, artifact::README];
+    let is_there = |file: &Artifact| {
+        let is_card = artifacts.iter().any(|of_card| of_card.path == file.path);
+        !lists.contains(&&file.path[..]) && (is_card || folder.join(&file.path).exists())
     };
-    let mut differences = artifact::differences(folder, artifacts).into_iter();
-    match differences.find(is_other) {
+    let there = whole.artifacts().iter().filter(|file| is_there(file));
+    let there: Vec<Artifact> = there.cloned().collect();
+    let changed = artifact::changed(folder, &there).into_iter();
+    let mut other = changed.chain(artifact::stale(folder, whole.artifacts()));
+    match other.next() {
         None => Ok(()),
         Some(other) => Err(CommandError::input(format!(
             "{}: is of another configuration, board, version or --language ({other}); {remedy}",
@@ -158,7 +157,8 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, CommandError> {
             "--language = vhdl: open tools read Verilog; leave it out{vendor}"
         )));
     }
-    let artifacts = emit_card(&project, language)?;
+    let whole = Whole::of_card(&project, language)?;
+    let artifacts = whole.with(&project.with)?;
     let bitstream = file_name(&project, &board, maker)?;
     if artifacts.iter().any(|a| a.path == bitstream) {
         return Err(CommandError::input(format!(
@@ -172,7 +172,7 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, CommandError> {
     let remedy = "give another folder with --out";
     if arguments.read {
         let make = "emit it, and run the script there";
-        be_of(&folder, &folder, &artifacts, make)?;
+        be_of(&folder, &folder, &whole, &artifacts, make)?;
     } else {
         artifact::write(&folder, &artifacts, remedy)?;
     }

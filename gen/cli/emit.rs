@@ -6,7 +6,7 @@ use endat_config::extras::{named, DRIVER};
 use endat_config::Configuration;
 use endat_console::artifact;
 use endat_console::error::CommandError;
-use endat_emit::with::emit_with;
+use endat_emit::with::Whole;
 use endat_terminal::work::{interrupted, say};
 use serde_json::json;
 use std::path::PathBuf;
@@ -54,7 +54,7 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, CommandError> {
     let language = arguments.emission.language()?;
     let (configuration, folder) = arguments.emission.load()?;
     let with = arguments.with(&configuration)?;
-    let artifacts = emit_with(&configuration, language, &with)?;
+    let artifacts = Whole::of(&configuration, language)?.with(&with)?;
     if arguments.driver {
         say("--driver is --with driver now");
     }

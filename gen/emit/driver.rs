@@ -1,9 +1,9 @@
-//! The C driver as files that can be handed out beside a card.
+//! The C driver as files of an emission.
 
 pub use endat_c_driver::FILES;
 use endat_console::artifact::Artifact;
 
-/// What the README of an emission says of it.
+/// Its row in the README of an emission.
 pub const ROW: &str = "| `endat.h` and the other `endat*` | driver in C99 for this and every other card, on any bus: `endat.h` documents its calls; `endat_transports.h` is for SPI, parallel bus and UART |";
 
 /// Every file of the driver.

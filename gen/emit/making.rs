@@ -6,7 +6,7 @@ use endat_console::error::CommandError;
 use minijinja::context;
 use minijinja::value::Serde;
 
-/// What makes a board's bitstream.
+/// The tools that make a board's bitstream.
 #[derive(Clone, Copy, Debug)]
 pub enum Maker<'a> {
     /// yosys, nextpnr and a packer.
@@ -16,7 +16,7 @@ pub enum Maker<'a> {
 }
 
 impl<'a> Maker<'a> {
-    /// What the family of a board has; open tools if it has both and nobody asks for the vendor's.
+    /// The tools of a board's family: open tools if it has both, unless the vendor's are asked for.
     pub fn of(board: &'a Board, asks_vendor: bool) -> Result<Self, CommandError> {
         let family = &board.family;
         match (&family.build, &family.vendor) {
