@@ -1,6 +1,7 @@
-//! What an emission may have besides the card: the key `with`, and `emit --with`.
+//! Extra files of an emission: the key `with`, and `emit --with`.
 
 use super::keys::WITH;
+use super::parts::read_words;
 use super::reader::Table;
 use crate::form::key::Choice;
 use endat_console::error::{shown, CommandError};
@@ -8,15 +9,15 @@ use endat_console::error::{shown, CommandError};
 /// Files that are emitted only where they are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extra {
-    /// As it is asked for.
+    /// Its word.
     pub word: &'static str,
-    /// What it is.
+    /// Its meaning.
     pub means: &'static str,
     /// Ends of the names of its files, after that of the card.
     pub ends: &'static [&'static str],
 }
 
-/// All that one may ask for.
+/// The word for all of them.
 pub const ALL: &str = "all";
 /// The driver in C, whose files have names without that of the card.
 pub const DRIVER: &str = "driver";
@@ -69,23 +70,15 @@ pub(crate) fn choices() -> Vec<Choice> {
         .collect()
 }
 
-/// Reads the key; words of no extra are complained about.
+/// Reads the key, and complains about unknown words.
 pub(crate) fn read(table: &Table<'_, '_>) -> Vec<String> {
-    let mut with = Vec::new();
-    for word in table.strings(&WITH).unwrap_or_default() {
-        let text = match () {
-            () if !WITH.words().contains(&word.value) => {
-                format!("unknown extra; use {}", WITH.words().join(", "))
-            }
-            () if with.contains(&word.value) => "stands twice; remove one".into(),
-            () => {
-                with.push(word.value);
-                continue;
-            }
-        };
-        table.complain(word.line, WITH.name, &format!("{:?}", word.value), &text);
-    }
-    with
+    let words = table.strings(&WITH).unwrap_or_default();
+    let places = read_words(table, &WITH, words, "extra").unwrap_or_default();
+    let mut names = WITH.words();
+    let named = places
+        .into_iter()
+        .map(|place| std::mem::take(&mut names[place]));
+    named.collect()
 }
 
 /// Words of `--with`, checked.

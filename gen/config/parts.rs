@@ -1,6 +1,6 @@
-//! The key `parts`: a list of names.
+//! Lists of words: the key `parts`, and others.
 
-use super::reader::Table;
+use super::reader::{At, Table};
 use crate::form::key::Key;
 
 /// Marks the parts that a list names, in the order of the key's words; line and text of each, `None` if something is wrong.
@@ -42,4 +42,28 @@ pub(super) fn check_leader(
     let text = format!("every other part takes {leader}; add {leader:?}");
     table.complain(*line, key.name, shown, &text);
     None
+}
+
+/// Places of the words of a list among those of its key. Complains about each word that is unknown, or there twice; then `None`.
+pub(super) fn read_words(
+    table: &Table<'_, '_>,
+    key: &'static Key,
+    words: Vec<At<String>>,
+    kind: &str,
+) -> Option<Vec<usize>> {
+    let names = key.words();
+    let (mut places, mut is_good) = (Vec::new(), true);
+    for word in words {
+        let text = match names.iter().position(|name| *name == word.value) {
+            None => format!("unknown {kind}; use {}", names.join(", ")),
+            Some(place) if places.contains(&place) => "stands twice; remove one".into(),
+            Some(place) => {
+                places.push(place);
+                continue;
+            }
+        };
+        table.complain(word.line, key.name, &format!("{:?}", word.value), &text);
+        is_good = false;
+    }
+    is_good.then_some(places)
 }

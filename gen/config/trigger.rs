@@ -1,6 +1,7 @@
 //! Keys about triggers: those of the card, and those that a channel has for itself.
 
 use super::keys::{DIVIDER, ENABLED, OWN_SOURCES};
+use super::parts::read_words;
 use super::reader::Table;
 use crate::form::key::Key;
 use endat_hdl::config::{OwnTrigger, TriggerSources};
@@ -40,18 +41,8 @@ pub fn read_sources(table: &Table<'_, '_>, key: &'static Key) -> Option<TriggerS
     };
     let mut sources = TriggerSources::default();
     let marks = &mut [&mut sources.pin, &mut sources.timer, &mut sources.register];
-    let names = key.words();
-    let mut good = true;
-    for word in words {
-        let index = names.iter().position(|name| *name == word.value);
-        let mark = index.and_then(|index| marks.get_mut(index));
-        let text = match mark.map(|mark| std::mem::replace(*mark, true)) {
-            None => format!("unknown trigger; use {}", names.join(", ")),
-            Some(true) => "stands twice; remove one".into(),
-            Some(false) => continue,
-        };
-        table.complain(word.line, key.name, &format!("{:?}", word.value), &text);
-        good = false;
+    for place in read_words(table, key, words, "trigger")? {
+        *marks[place] = true;
     }
-    good.then_some(sources)
+    Some(sources)
 }
