@@ -1,7 +1,7 @@
 //! `explain NAME`: what a cause, a register, a field or a value is.
 
 use clap::Args;
-use endat_console::did_you_mean::closest;
+use endat_console::did_you_mean::guesses;
 use endat_console::error::{shown, CommandError};
 use endat_host::explain;
 use endat_terminal::outcome::Outcome;
@@ -20,11 +20,7 @@ pub fn run(arguments: &ExplainArgs) -> Result<Outcome, CommandError> {
     if !text.is_empty() {
         return Ok(Outcome::good(text));
     }
-    let guess: Vec<String> = closest(&arguments.name, explain::names(), |known| known);
-    let guess = match guess.is_empty() {
-        true => String::new(),
-        false => format!("did you mean {}? ", guess.join(" or ")),
-    };
+    let guess = guesses(&arguments.name, explain::names());
     Err(CommandError::input(format!(
         "name = {}: no cause, register, field or value has this name; {guess}`endat reg list` lists registers, and `endat-gen explain` knows keys of a configuration",
         shown(&arguments.name),

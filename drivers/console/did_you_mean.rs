@@ -43,6 +43,15 @@ pub fn guess<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Optio
     near.first().map(|near| format!("did you mean {near}?"))
 }
 
+/// `did you mean A or B? ` with all names that are closest; empty if none is close.
+pub fn guesses(typed: &str, names: impl IntoIterator<Item = String>) -> String {
+    let near = closest(typed, names, |name| name);
+    match near.is_empty() {
+        true => String::new(),
+        false => format!("did you mean {}? ", near.join(" or ")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

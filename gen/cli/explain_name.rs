@@ -1,7 +1,7 @@
 //! `explain NAME`: what a key, a cause, a register or a word of the protocol is.
 
 use super::{explain_key, glossary};
-use endat_console::did_you_mean::closest;
+use endat_console::did_you_mean::guesses;
 use endat_console::error::{shown, CommandError};
 use endat_host::explain;
 
@@ -15,13 +15,9 @@ pub fn text(typed: &str) -> Result<String, CommandError> {
     let mut names = explain::names();
     names.extend(explain_key::names());
     names.extend(glossary::names());
-    let guess: Vec<String> = closest(&name, names, |known| known);
-    let guess = match guess.is_empty() {
-        true => String::new(),
-        false => format!("did you mean {}? ", guess.join(" or ")),
-    };
+    let guess = guesses(&name, names);
     Err(CommandError::input(format!(
-        "name = {}: no key, cause, register, field or word of the glossary has this name; {guess}docs/registers.md lists registers and docs/configuration.md keys",
+        "name = {}: no key, cause, register, field or word of the glossary has this name; {guess}`endat reg list` lists registers and docs/configuration.md keys",
         shown(typed),
     )))
 }
