@@ -1,11 +1,11 @@
-//! `boards`: lists the boards that come with the program, prints the file of one, or builds the shipped card on them.
+//! `boards`: lists the boards that come with the program, prints the file of one, or draws its wiring.
 
 use super::{to_json, Outcome};
 use endat_config as config;
 use endat_config::arguments::board_of;
 use endat_config::board::{self, Board};
 use endat_console::error::{shown, CommandError};
-use endat_draw::decimal;
+use endat_draw::mhz;
 use endat_emit::wiring;
 
 /// Prints a board's file.
@@ -25,10 +25,6 @@ pub fn wiring(name: &str) -> Result<Outcome, CommandError> {
     let board = board_of("--wiring", name)?;
     let project = config::shipped_on(&board)?;
     Ok(Outcome::good(wiring::drawing(&project, &board)))
-}
-
-fn mhz(hz: u64) -> String {
-    decimal(hz as f64 / 1e6, 6)
 }
 
 /// A row for each, as Markdown.

@@ -15,7 +15,7 @@ use endat_config::Project;
 use endat_console::artifact::Artifact;
 use endat_console::error::CommandError;
 use endat_constraints::templates;
-use endat_draw::decimal;
+use endat_draw::{decimal, mhz};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::service::program::CLEAR_CYCLES;
 use endat_hdl::endat::timing::ABORT_US;
@@ -83,11 +83,6 @@ impl Port {
 /// A number of ns as the vendor's tools read it, without needless digits.
 fn ns(hz: u64) -> String {
     decimal(1e9 / hz as f64, 4)
-}
-
-/// A number of MHz, without needless digits.
-fn mhz(hz: u64) -> String {
-    decimal(hz as f64 / 1e6, 6)
 }
 
 /// Where an interrupt goes that the configuration does not ask for.

@@ -14,7 +14,7 @@ use endat_config::template::render;
 use endat_config::{Project, Receiver};
 use endat_console::artifact::Artifact;
 use endat_console::error::CommandError;
-use endat_draw::decimal;
+use endat_draw::{decimal, mhz};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::protocols::t_format::protocol::SYSTEM_HZ;
 use endat_regs::Protocol;
@@ -336,7 +336,7 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, Comm
         vendor => VENDOR,
         library => LIBRARY,
         vlnv => format!("{VENDOR}:{LIBRARY}:{}:{}", core.name, env!("CARGO_PKG_VERSION")),
-        mhz => decimal(fastest_hz as f64 / 1e6, 6),
+        mhz => mhz(fastest_hz),
         period_ns => decimal(1e9 / fastest_hz as f64, 3),
         two_samples => core.input_hz > fastest_hz,
         input_ns => decimal(1e9 / core.input_hz as f64, 3),

@@ -19,7 +19,7 @@ use endat_config::board::{Board, Build, ReadBack};
 use endat_config::Project;
 use endat_console::artifact::{self, Artifact};
 use endat_console::error::CommandError;
-use endat_draw::decimal;
+use endat_draw::{decimal, mhz};
 use endat_emit::making::{file_name, fill, input_hz, Maker};
 use serde::Serialize;
 use serde_json::{json, Value};
@@ -189,7 +189,7 @@ pub fn build(
             "{name}: {signal} has no register of its own, and so none in its output cell"
         ));
     }
-    let mhz = decimal(project.card.system_hz as f64 / 1e6, 6);
+    let mhz = mhz(project.card.system_hz);
     let mut best: Option<Attempt> = None;
     let mut reached_mhz = vec![];
     let Effort {

@@ -13,6 +13,11 @@ pub fn decimal(value: f64, digits: usize) -> String {
     }
 }
 
+/// A frequency in MHz, without needless zeros.
+pub fn mhz(hz: u64) -> String {
+    decimal(hz as f64 / 1e6, 6)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,7 +10,7 @@ mod svg;
 mod waves;
 mod wiring;
 
-pub use decimal::decimal;
+pub use decimal::{decimal, mhz};
 pub use edges::Edges;
 pub use histogram::edges_svg;
 pub use series::{series_svg, Lane, Series};

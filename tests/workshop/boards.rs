@@ -5,7 +5,7 @@ use endat_config::arguments::board_of;
 use endat_config::board::Board;
 use endat_config::shipped_on;
 use endat_console::error::CommandError;
-use endat_draw::decimal;
+use endat_draw::{decimal, mhz};
 use endat_terminal::outcome::Outcome;
 use endat_terminal::work::Steps;
 use endat_tools::bitstream::{self, Effort, Use};
@@ -18,16 +18,12 @@ pub struct BoardsArgs {
     board: Option<String>,
 }
 
-/// What is tried for the table.
+/// Effort for each row of the table.
 const EFFORT: Effort = Effort {
     seeds: 5,
     until_met: false,
     way_back: None,
 };
-
-fn mhz(hz: u64) -> String {
-    decimal(hz as f64 / 1e6, 6)
-}
 
 /// Builds the shipped card, and prints a row for each board as Markdown; exits with 1 if one is too slow.
 pub fn run(arguments: &BoardsArgs) -> Result<Outcome, CommandError> {
@@ -65,7 +61,7 @@ pub fn run(arguments: &BoardsArgs) -> Result<Outcome, CommandError> {
         let best = &report.best;
         let reached = report.reached_mhz.iter().map(|mhz| decimal(*mhz, 1));
         let reached = reached.collect::<Vec<_>>().join(", ");
-        // What there are many of, and the card takes some of.
+        // Cells that the device has many of, and the card takes a part of.
         let counts = |cells: &Use| cells.available > 20 && cells.used * 50 > cells.available;
         let cells = best.cells.iter().filter(|(_, cells)| counts(cells));
         let cells = cells.map(|(kind, c)| format!("{kind} {} of {}", c.used, c.available));
