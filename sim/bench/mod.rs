@@ -412,16 +412,9 @@ impl<E: Engine> Bench<E> {
     }
 
     fn drive_base(&mut self) {
-        // The values of this cycle: those after the previous edge remain until this one has passed.
-        let last = self.cycle - 1;
-        if let Some(id) = self.base.timestamp {
-            self.engine.set(id, u128::from(last & 0xFFFF_FFFF));
-        }
-        if let Some(id) = self.base.tick_us {
-            let tick = is_tick_us(self.cycle, self.system_hz);
-            self.engine.set(id, u128::from(tick));
-        }
-        let trigger = last < self.trigger_until;
+        self.base
+            .drive(&mut self.engine, self.cycle, self.system_hz);
+        let trigger = self.cycle - 1 < self.trigger_until;
         if trigger != self.trigger_level {
             self.trigger_level = trigger;
             if let Some(id) = self.base.trigger {

@@ -2,7 +2,7 @@
 
 use super::pins::{find, DataPins, Pins, TimeBase};
 use super::record::ResultPorts;
-use super::{edge_time, is_tick_us, ChannelResult, PinNames};
+use super::{edge_time, ChannelResult, PinNames};
 use crate::{
     encoder::{Drive, Output, Symbol},
     line::{Conflict, Line, LineConfig},
@@ -39,13 +39,8 @@ impl<E: Engine> End<E> {
     /// Drives the inputs that count time.
     fn drive_base(&mut self) {
         self.cycle += 1;
-        if let Some(id) = self.base.timestamp {
-            self.engine.set(id, u128::from(self.cycle & 0xFFFF_FFFF));
-        }
-        if let Some(id) = self.base.tick_us {
-            let tick = is_tick_us(self.cycle, self.system_hz);
-            self.engine.set(id, tick.into());
-        }
+        self.base
+            .drive(&mut self.engine, self.cycle, self.system_hz);
     }
 
     /// What the design does to DATA.

@@ -1,6 +1,7 @@
 //! The ports of a design that the bench uses.
 
-use rtl_design::engine::{Port, PortId};
+use super::is_tick_us;
+use rtl_design::engine::{Engine, Port, PortId};
 
 /// Names of the pins of one EnDat port in a design.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -125,6 +126,17 @@ impl TimeBase {
             tick_us: find("tick_us"),
             timestamp: find("timestamp"),
             trigger: find("trigger").or(find("trigger_i")),
+        }
+    }
+
+    /// Drives the inputs that count time in cycle `cycle` of a design.
+    pub(super) fn drive<E: Engine>(&self, engine: &mut E, cycle: u64, system_hz: u64) {
+        // The value of this cycle: that after the previous edge remains until this one has passed.
+        if let Some(id) = self.timestamp {
+            engine.set(id, u128::from((cycle - 1) & 0xFFFF_FFFF));
+        }
+        if let Some(id) = self.tick_us {
+            engine.set(id, is_tick_us(cycle, system_hz).into());
         }
     }
 }
