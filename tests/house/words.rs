@@ -38,10 +38,10 @@ const WHAT: &str = "name the subject: \"Absent fields read 0\", not \"What is ab
 
 /// Pages that a command writes whole; their words are in its sources.
 const WRITTEN: [(&str, &str); 5] = [
-    ("docs/comparison.md", "bench comparison"),
-    ("docs/mutants.md", "campaign page"),
+    ("docs/comparison.md", "endat-workshop bench comparison"),
+    ("docs/mutants.md", "endat-workshop page"),
     ("docs/proofs.md", "prove --page"),
-    ("docs/reliability.md", "campaign page"),
+    ("docs/reliability.md", "endat-workshop page"),
     (
         "docs/works-with.md",
         "tests/strangers/table.toml: names and claims of its tests",
