@@ -1,4 +1,4 @@
-//! What programs and libraries have in common: messages with exit codes, numbers that options take, files that are written whole.
+//! Code that programs and libraries share: messages with exit codes, numbers that options take, files that are written whole.
 
 pub mod artifact;
 pub mod did_you_mean;

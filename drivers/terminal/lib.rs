@@ -1,4 +1,4 @@
-//! What the programs show on a terminal: outcomes, colours, progress, completions and manual pages, files besides the result.
+//! The terminal of the programs: outcomes, colours, progress, completions and manual pages, files besides the result.
 
 pub mod colour;
 pub mod documents;

@@ -1,4 +1,4 @@
-//! What a run of a program gives, and how it reaches the terminal.
+//! The outcome of a run, and its way to the terminal.
 
 use crate::colour;
 use crate::work::{program, set_program};
@@ -8,7 +8,7 @@ use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::process::ExitCode;
 
-/// What a run of a program gives.
+/// The outcome of a run of a program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Outcome {
     /// Results.
@@ -28,7 +28,7 @@ impl Outcome {
         }
     }
 
-    /// Of a run that did not succeed.
+    /// The outcome of an error.
     pub fn failed(error: &CommandError) -> Self {
         Self {
             stdout: String::new(),
@@ -46,7 +46,7 @@ impl Outcome {
         }
     }
 
-    /// Of a run with these arguments, the first of which is the program's name; with colours.
+    /// Runs a program with these arguments, the first of which is its name; the outcome has colours.
     pub fn of<P: Parser>(
         arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>,
         execute: impl FnOnce(P) -> Result<Self, CommandError>,

@@ -1,4 +1,4 @@
-//! Commands that the program `endat` has now: an old spelling says the new one, and runs it where it is there.
+//! Commands that moved to the program `endat`: an old spelling prints the new one, and runs it if `endat` is installed.
 
 use endat_console::error::CommandError;
 use endat_terminal::outcome::Outcome;
@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// They were commands of this program until version 0.2.
+/// Commands of this program before version 0.2.
 const MOVED: [&str; 13] = [
     "card", "id", "inject", "log", "margin", "monitor", "param", "plot", "read", "reg", "serve",
     "stats", "view",
@@ -15,7 +15,7 @@ const MOVED: [&str; 13] = [
 /// Commands of the workshop, which is not shipped.
 const WORKSHOP: [&str; 2] = ["bench", "flows"];
 
-/// The program beside this one, or where the shell finds it.
+/// The program `endat` next to this one, or the one in PATH.
 fn endat() -> PathBuf {
     let name = format!("endat{}", std::env::consts::EXE_SUFFIX);
     let beside = std::env::current_exe()
@@ -27,7 +27,7 @@ fn endat() -> PathBuf {
     }
 }
 
-/// Runs a command that is elsewhere now; none if the words after the program's name are none.
+/// Runs a command that moved; `None` if the words after the program's name begin with no such command.
 pub fn run(words: &[OsString]) -> Option<Result<Outcome, CommandError>> {
     let name = words.first()?.to_str()?;
     if WORKSHOP.contains(&name) {

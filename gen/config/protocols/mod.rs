@@ -1,4 +1,4 @@
-//! What a configuration has to know of a protocol besides EnDat: keys of its channels, their checks, their report.
+//! Other protocols than EnDat in a configuration: keys of their channels, checks and reports.
 
 pub mod ssi;
 pub mod t_format;
@@ -16,16 +16,16 @@ pub trait OtherConfig: Sync {
     /// Reads a `[[channel]]` of a card; none if what is wrong leaves nothing to judge.
     fn read(&self, table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Wanted>;
 
-    /// What decides what a channel does, for the hash of a card.
+    /// The settings of a channel as text, for the hash of a card.
     fn canonical(&self, channel: &ChannelConfig) -> String;
 
-    /// What `explain` says of channel `index`.
+    /// The report of `explain` about channel `index`.
     fn report(&self, card: &CardConfig, index: usize, encoder: &str) -> OtherReport;
 }
 
 const OTHERS: &[&dyn OtherConfig] = &[&t_format::TFormat, &ssi::Ssi];
 
-/// The configuration of a protocol; none of EnDat, which has keys of its own.
+/// The configuration of a protocol; `None` for EnDat, which has separate keys.
 pub fn other(protocol: Protocol) -> Option<&'static dyn OtherConfig> {
     let mut all = OTHERS.iter().copied();
     all.find(|other| other.protocol() == protocol)
@@ -37,7 +37,7 @@ pub fn spoken(card: &CardConfig) -> impl Iterator<Item = Protocol> + '_ {
     all.filter(|protocol| card.speaks(*protocol))
 }
 
-/// What is asked of a channel.
+/// The settings that a channel asks for.
 pub struct Wanted {
     /// All but its triggers.
     pub spec: ChannelSpec,
@@ -45,7 +45,7 @@ pub struct Wanted {
     pub lines: Vec<(&'static str, usize)>,
 }
 
-/// What `explain` tells of a channel.
+/// The report of `explain` about a channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct OtherReport {

@@ -1,4 +1,4 @@
-//! What a virtual card has for a protocol besides EnDat: encoders, and what can be wrong with them.
+//! Other protocols than EnDat on a virtual card: encoders and their faults.
 
 pub mod ssi;
 pub mod t_format;
@@ -43,16 +43,16 @@ pub struct Plugged {
     pub encoder: Box<dyn OtherEncoder>,
     /// Its position, as a result has it.
     pub motion: Motion,
-    /// What can be wrong with it.
+    /// Its faults.
     pub faults: Box<dyn OtherFaults>,
 }
 
-/// What can be wrong with an encoder of a virtual card.
+/// Faults of an encoder of a virtual card.
 pub trait OtherFaults: Send {
     /// Faults that it knows, in words.
     fn known(&self) -> Vec<String>;
 
-    /// Makes one; none if there is no such fault.
+    /// Makes a fault; `None` if the encoder has no such fault.
     fn make(&mut self, encoder: &mut dyn OtherEncoder, deed: Deed) -> Option<()>;
 
     /// Ends what was to spoil some replies only; whether something of that kind goes on.

@@ -11,7 +11,7 @@ use endat_terminal::outcome::Outcome;
 use endat_terminal::work::{Steps, ThreadsArgs};
 use std::path::PathBuf;
 
-/// Mutants of each block, if not told, and of the one block of `--quick`.
+/// Mutants of each block by default, and of the one block of `--quick`.
 const USUAL: &str = "30";
 const QUICK: u64 = 20;
 /// The card and the block of `--quick`: small ones.
@@ -54,7 +54,7 @@ pub struct MutantsArgs {
     case: Option<String>,
 }
 
-/// What is asked for.
+/// The wish of the user.
 enum Asked {
     /// One case, which has been run.
     One(Outcome),

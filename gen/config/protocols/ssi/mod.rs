@@ -14,7 +14,7 @@ use endat_regs::Protocol;
 /// See the module.
 pub struct Ssi;
 
-/// What is asked of a channel that speaks it.
+/// The settings of an SSI channel.
 pub fn asked(channel: &ChannelConfig) -> &SsiSpec {
     let asked = channel.spoken.ssi();
     asked.expect("the registry asks for channels of this protocol")

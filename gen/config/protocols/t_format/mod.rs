@@ -14,7 +14,7 @@ use endat_regs::Protocol;
 /// See the module.
 pub struct TFormat;
 
-/// What is asked of a channel that speaks it.
+/// The settings of a T-format channel.
 pub fn asked(channel: &ChannelConfig) -> &TFormatSpec {
     let asked = channel.spoken.t_format();
     asked.expect("the registry asks for channels of this protocol")
