@@ -153,8 +153,8 @@ const BROKEN: [Change; 8] = [
     ),
     (
         "crc5_word",
-        "assign folded = word[14:0] ^",
-        "assign folded = {word[14:1], 1'b0} ^",
+        "assign folded = word[14:0] ^ word[29:15] ^",
+        "assign folded = word[14:0] ^ {word[29:16], 1'b0} ^",
         "depends on data",
     ),
 ];

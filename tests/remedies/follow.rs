@@ -803,7 +803,9 @@ impl Message<'_> {
                 .trim_end_matches(" bit/s");
             let words = words(plain);
             let is_word = |w: &String| {
-                !w.is_empty() && w.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+                !w.is_empty()
+                    && w.chars()
+                        .all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
             };
             if !words.is_empty() && words.iter().all(is_word) {
                 return each(
